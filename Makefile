@@ -1,0 +1,108 @@
+# hitpipe: make demo, make check, make install. `make help` lists the rest.
+
+VERSION := 0.1.0
+PREFIX  ?= /usr/local
+DESTDIR ?=
+CC      ?= cc
+BUILD   ?= build
+OPT     ?= -O3
+SANITIZE ?=
+JOBS    ?= $(shell nproc 2>/dev/null || echo 2)
+MAKEFLAGS += -j$(JOBS) --no-print-directory
+
+# ---- packages: one list, installed by `make deps` when something is missing ----------------------------------------
+PACKAGES_BUILD := gcc libc6-dev libgomp1 pkg-config libjansson-dev libopenexr-dev libassimp-dev libpng-dev
+PACKAGES_CHECK := libcmocka-dev libgmp-dev mandoc
+PACKAGES_CI    := clang libomp-dev clang-format libclang-rt-14-dev gcc-aarch64-linux-gnu libc6-dev-arm64-cross \
+                  qemu-user gnuplot-nox
+
+# ---- sources: every room's files, no list by hand --------------------------------------------------------------------
+ARCH    := $(shell $(CC) -dumpmachine 2>/dev/null | cut -d- -f1)
+LIB_SRC := $(filter-out rtl_model/pipes/wide.c,$(wildcard rtl_model/*/*.c)) $(wildcard driver/*.c driver/transport/*.c)
+HOST_SRC := $(wildcard host/*/*.c)
+SUPPORT_SRC := $(wildcard testbench/support/*.c testbench/reference/*.c)
+TEST_SRC := $(wildcard testbench/unit/test_*.c testbench/equal/test_*.c testbench/system/test_*.c)
+TEST_SH  := $(wildcard testbench/system/test_*.sh)
+FUZZ_SRC := $(wildcard testbench/fuzz/fuzz_*.c)
+BENCH_SRC := $(wildcard testbench/bench/bench_*.c)
+TOOL_SRC := $(wildcard testbench/tools/*.c)
+
+# wide.c once per instruction set; the flags of each
+ifeq ($(ARCH),x86_64)
+ISAS := plain sse2 avx2 avx512
+else ifeq ($(ARCH),aarch64)
+ISAS := plain neon
+else
+ISAS := plain
+endif
+ISA_FLAGS_plain  :=
+ISA_FLAGS_sse2   := -msse2
+ISA_FLAGS_avx2   := -mavx2
+ISA_FLAGS_avx512 := -mavx512f -mavx512dq -mavx512vl -mavx512bw -mprefer-vector-width=512
+ISA_FLAGS_neon   :=
+
+# ---- flags: the same bits everywhere, so no contraction and no fast-math -------------------------------------------------
+WARN   := -Wall -Wextra -Werror -Wshadow -Wvla -Wstrict-prototypes -Wmissing-prototypes
+BASE   := -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-fast-math $(WARN) -fPIC -pthread -fopenmp -g -MMD -MP
+ifneq ($(SANITIZE),)
+BASE   += -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer
+LDSAN  := -fsanitize=$(SANITIZE)
+endif
+INC    := -Irtl_model/include -Idriver/include -I.
+CFLAGS ?=
+ALL_CFLAGS = $(OPT) $(BASE) $(INC) -DHITPIPE_BUILD_VERSION='"$(VERSION)"' $(CFLAGS)
+HOST_CFLAGS = $(shell pkg-config --cflags OpenEXR jansson libpng assimp 2>/dev/null)
+LIBS_LIB  := -lm -pthread -fopenmp
+LIBS_HOST = -lOpenEXRCore $(shell pkg-config --libs jansson libpng assimp 2>/dev/null || echo -ljansson -lpng -lassimp)
+LIBS_TEST := -lcmocka -lgmp
+
+LIB_OBJ  := $(LIB_SRC:%.c=$(BUILD)/%.o) $(ISAS:%=$(BUILD)/rtl_model/pipes/wide_%.o)
+HOST_OBJ := $(HOST_SRC:%.c=$(BUILD)/%.o)
+HOST_LIB_OBJ := $(filter-out $(BUILD)/host/cli/main.o,$(HOST_OBJ))
+SUPPORT_OBJ := $(SUPPORT_SRC:%.c=$(BUILD)/%.o)
+TESTS    := $(TEST_SRC:%.c=$(BUILD)/%)
+BENCHES  := $(BENCH_SRC:%.c=$(BUILD)/%)
+TOOLS    := $(TOOL_SRC:%.c=$(BUILD)/%)
+HITPIPE  := $(BUILD)/hitpipe
+LIB      := $(BUILD)/libhitpipe.a
+SHLIB    := $(BUILD)/libhitpipe.so.0
+
+.PHONY: all help deps deps-check deps-ci demo check test tests install bench fuzz vectors format format-check clean
+.DEFAULT_GOAL := all
+
+all: $(HITPIPE) $(SHLIB) ## build program and library
+
+help: ## list these targets
+	@grep -hE '^[a-z-]+:.*## ' $(firstword $(MAKEFILE_LIST)) | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 16
+
+$(BUILD)/rtl_model/pipes/wide_%.o: rtl_model/pipes/wide.c
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) $(ISA_FLAGS_$*) -DHP_WIDE_ISA_$*=1 -DHP_WIDE_ISA=$* -c $< -o $@
+
+$(BUILD)/host/%.o: host/%.c
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) $(HOST_CFLAGS) -c $< -o $@
+
+$(BUILD)/%.o: %.c
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) -DHP_WIDE_ISAS="$(foreach i,$(ISAS),X($(i)))" -c $< -o $@
+
+$(LIB): $(LIB_OBJ)
+	@rm -f $@
+	ar rcs $@ $^
+
+$(SHLIB): $(LIB_OBJ)
+	$(CC) -shared -Wl,-soname,libhitpipe.so.0 $(LDSAN) $^ -o $@ $(LIBS_LIB)
+
+$(HITPIPE): $(HOST_OBJ) $(LIB)
+	$(CC) $(LDSAN) $(HOST_OBJ) $(LIB) -o $@ $(LIBS_HOST) $(LIBS_LIB)
+
+$(TESTS) $(BENCHES) $(TOOLS): $(BUILD)/%: $(BUILD)/%.o $(SUPPORT_OBJ) $(HOST_LIB_OBJ) $(LIB)
+	$(CC) $(LDSAN) $< $(SUPPORT_OBJ) $(HOST_LIB_OBJ) $(LIB) -o $@ $(LIBS_TEST) $(LIBS_HOST) $(LIBS_LIB)
+
+include $(wildcard mk/*.mk)
+
+clean: ## remove what was built
+	rm -rf build out
+
+-include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
