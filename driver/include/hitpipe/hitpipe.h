@@ -44,6 +44,9 @@ typedef struct hp_device_def {
     void *vcd_context;
     unsigned timeout_ms;     /* longest wait for one answer; default 10000 */
     unsigned retries;        /* how often a damaged or lost packet is sent again; default 3 */
+    bool unchecked;          /* send objects and matrices as they are, NaN, infinities and zero directions too, which
+                              * hp_upload, hp_transform and hp_query refuse otherwise: for bring-up and replay of golden
+                              * vectors. A board answers F 0 to such a pair. Default false */
     unsigned in_flight;      /* most packets under way; 0: as many as the board gives credits for */
     hp_progress *progress;   /* NULL: none */
     void *progress_context;
