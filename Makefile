@@ -11,13 +11,12 @@ JOBS    ?= $(shell nproc 2>/dev/null || echo 2)
 MAKEFLAGS += -j$(JOBS) --no-print-directory
 
 # ---- packages: one list, installed by `make deps` when something is missing ----------------------------------------
-PACKAGES_BUILD := gcc libc6-dev libgomp1 pkg-config libjansson-dev libopenexr-dev libassimp-dev libpng-dev
-PACKAGES_CHECK := libcmocka-dev libgmp-dev mandoc
-PACKAGES_CI    := clang libomp-dev clang-format libclang-rt-14-dev gcc-aarch64-linux-gnu libc6-dev-arm64-cross \
-                  qemu-user gnuplot-nox
+PACKAGES_BUILD := gcc libc6-dev pkg-config libjansson-dev libopenexr-dev libassimp-dev libpng-dev
+PACKAGES_CHECK := libcmocka-dev libgmp-dev mandoc g++
+PACKAGES_CI    := clang libomp-dev libclang-rt-14-dev clang-format gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
 
 # ---- sources: every room's files, no list by hand --------------------------------------------------------------------
-ARCH    := $(shell $(CC) -dumpmachine 2>/dev/null | cut -d- -f1)
+ARCH    := $(or $(shell $(CC) -dumpmachine 2>/dev/null | cut -d- -f1),$(shell uname -m))
 LIB_SRC := $(filter-out rtl_model/pipes/wide.c,$(wildcard rtl_model/*/*.c)) $(wildcard driver/*.c driver/transport/*.c)
 HOST_SRC := $(wildcard host/*/*.c)
 SUPPORT_SRC := $(wildcard testbench/support/*.c testbench/reference/*.c)
@@ -99,6 +98,27 @@ $(HITPIPE): $(HOST_OBJ) $(LIB)
 
 $(TESTS) $(BENCHES) $(TOOLS): $(BUILD)/%: $(BUILD)/%.o $(SUPPORT_OBJ) $(HOST_LIB_OBJ) $(LIB)
 	$(CC) $(LDSAN) $< $(SUPPORT_OBJ) $(HOST_LIB_OBJ) $(LIB) -o $@ $(LIBS_TEST) $(LIBS_HOST) $(LIBS_LIB)
+
+# ---- what a new user runs ---------------------------------------------------------------------------------------------
+TERRAIN := vectors/terrain/jacksboro.exr
+
+demo: ## install missing packages, build, trace the real terrain on the simulated board
+	@mk/deps.sh $(PACKAGES_BUILD)
+	@$(MAKE) all
+	@mkdir -p out
+	$(HITPIPE) trace $(TERRAIN) --resample 292x447 --out out/terrain.exr --png out/terrain.png --report out/report.json
+
+check: ## install missing packages, build, run all tests
+	@mk/deps.sh $(PACKAGES_BUILD) $(PACKAGES_CHECK)
+	@$(MAKE) test
+
+test: all tests
+	@BUILD=$(BUILD) testbench/run $(JOBS) $(TESTS) $(TEST_SH)
+
+tests: $(TESTS) $(TOOLS) $(BENCHES)
+
+bench: all $(BENCHES) ## time the datapath and the engines, as ratios in one run
+	@for b in $(BENCHES); do $$b || exit 1; done
 
 include $(wildcard mk/*.mk)
 

@@ -1,0 +1,25 @@
+# make install: program, library, headers, pkg-config file, man pages. PREFIX and DESTDIR as usual.
+PUBLIC_HEADERS := driver/include/hitpipe/hitpipe.h \
+                  $(addprefix rtl_model/include/hitpipe/,types.h config.h counters.h packet.h pipe.h) \
+                  $(wildcard rtl_model/include/hitpipe/*.def)
+MAN_PAGES := $(wildcard docs/man/*.[1-9])
+DEST := $(DESTDIR)$(PREFIX)
+
+install: all ## put program, library, headers, pkg-config file and man pages under PREFIX
+	install -d $(DEST)/bin $(DEST)/lib/pkgconfig $(DEST)/include/hitpipe
+	install -m 755 $(HITPIPE) $(DEST)/bin/hitpipe
+	install -m 644 $(LIB) $(DEST)/lib/libhitpipe.a
+	install -m 755 $(SHLIB) $(DEST)/lib/libhitpipe.so.$(VERSION)
+	ln -sf libhitpipe.so.$(VERSION) $(DEST)/lib/libhitpipe.so.0
+	ln -sf libhitpipe.so.0 $(DEST)/lib/libhitpipe.so
+	install -m 644 $(PUBLIC_HEADERS) $(DEST)/include/hitpipe
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' mk/hitpipe.pc.in >$(DEST)/lib/pkgconfig/hitpipe.pc
+	@for page in $(MAN_PAGES); do \
+	    install -D -m 644 $$page $(DEST)/share/man/man$${page##*.}/$${page##*/} || exit 1; done
+
+uninstall: ## take away what `make install` put there
+	rm -f $(DEST)/bin/hitpipe $(DEST)/lib/libhitpipe.* $(DEST)/lib/pkgconfig/hitpipe.pc
+	rm -rf $(DEST)/include/hitpipe
+	@for page in $(MAN_PAGES); do rm -f $(DEST)/share/man/man$${page##*.}/$${page##*/}; done
+
+.PHONY: uninstall
