@@ -8,7 +8,13 @@ BUILD   ?= build
 OPT     ?= -O3
 SANITIZE ?=
 JOBS    ?= $(shell nproc 2>/dev/null || echo 2)
-MAKEFLAGS += -j$(JOBS) --no-print-directory
+ifeq ($(MAKELEVEL),0)
+MAKEFLAGS += -j$(JOBS)
+endif
+MAKEFLAGS += --no-print-directory
+# V=1 shows whole commands
+say = @$(if $(V),,echo "  $(1)  $@";)
+run = $(if $(V),,@)
 
 # ---- packages: one list, installed by `make deps` when something is missing ----------------------------------------
 PACKAGES_BUILD := gcc libc6-dev pkg-config libjansson-dev libopenexr-dev libassimp-dev libpng-dev
@@ -72,32 +78,35 @@ SHLIB    := $(BUILD)/libhitpipe.so.0
 all: $(HITPIPE) $(SHLIB) ## build program and library
 
 help: ## list these targets
-	@grep -hE '^[a-z-]+:.*## ' $(firstword $(MAKEFILE_LIST)) | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 16
+	@grep -hE '^[a-z-]+:.*## ' Makefile mk/*.mk | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 16
 
 $(BUILD)/rtl_model/pipes/wide_%.o: rtl_model/pipes/wide.c
-	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) $(ISA_FLAGS_$*) -DHP_WIDE_ISA_$*=1 -DHP_WIDE_ISA=$* -c $< -o $@
+	$(call say,CC)mkdir -p $(@D)
+	$(run)$(CC) $(ALL_CFLAGS) $(ISA_FLAGS_$*) -DHP_WIDE_ISA_$*=1 -DHP_WIDE_ISA=$* -c $< -o $@
 
 $(BUILD)/host/%.o: host/%.c
-	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) $(HOST_CFLAGS) -c $< -o $@
+	$(call say,CC)mkdir -p $(@D)
+	$(run)$(CC) $(ALL_CFLAGS) $(HOST_CFLAGS) -c $< -o $@
 
 $(BUILD)/%.o: %.c
-	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -DHP_WIDE_ISAS="$(foreach i,$(ISAS),X($(i)))" -c $< -o $@
+	$(call say,CC)mkdir -p $(@D)
+	$(run)$(CC) $(ALL_CFLAGS) -DHP_WIDE_ISAS="$(foreach i,$(ISAS),X($(i)))" -c $< -o $@
 
 $(LIB): $(LIB_OBJ)
-	@rm -f $@
-	ar rcs $@ $^
+	$(call say,AR)rm -f $@
+	$(run)ar rcs $@ $^
 
 $(SHLIB): $(LIB_OBJ)
-	$(CC) -shared -Wl,-soname,libhitpipe.so.0 $(LDSAN) $^ -o $@ $(LIBS_LIB)
+	$(call say,LD)
+	$(run)$(CC) -shared -Wl,-soname,libhitpipe.so.0 $(LDSAN) $^ -o $@ $(LIBS_LIB)
 
 $(HITPIPE): $(HOST_OBJ) $(LIB)
-	$(CC) $(LDSAN) $(HOST_OBJ) $(LIB) -o $@ $(LIBS_HOST) $(LIBS_LIB)
+	$(call say,LD)
+	$(run)$(CC) $(LDSAN) $(HOST_OBJ) $(LIB) -o $@ $(LIBS_HOST) $(LIBS_LIB)
 
 $(TESTS) $(BENCHES) $(TOOLS): $(BUILD)/%: $(BUILD)/%.o $(SUPPORT_OBJ) $(HOST_LIB_OBJ) $(LIB)
-	$(CC) $(LDSAN) $< $(SUPPORT_OBJ) $(HOST_LIB_OBJ) $(LIB) -o $@ $(LIBS_TEST) $(LIBS_HOST) $(LIBS_LIB)
+	$(call say,LD)
+	$(run)$(CC) $(LDSAN) $< $(SUPPORT_OBJ) $(HOST_LIB_OBJ) $(LIB) -o $@ $(LIBS_TEST) $(LIBS_HOST) $(LIBS_LIB)
 
 # ---- what a new user runs ---------------------------------------------------------------------------------------------
 TERRAIN := vectors/terrain/jacksboro.exr
