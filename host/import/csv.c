@@ -1,0 +1,77 @@
+#include "host/import/csv.h"
+
+#include "host/import/text.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void hp_objects_free(hp_objects *objects) {
+    free(objects->words);
+    *objects = (hp_objects){0};
+}
+
+static bool line_ends(hp_text *text) {
+    return hp_text_at_line_end(text) || *text->at == '#';
+}
+
+static hp_status read_object(hp_text *text, hp_object object, float *words, hp_fault *fault) {
+    unsigned n = hp_object_words(object);
+    for (unsigned i = 0; i < n; i++) {
+        if (i > 0 && !line_ends(text)) {
+            if (*text->at != ',') return hp_text_fault(text, fault, "expected a comma after number %u", i);
+            text->at++;
+        }
+        if (line_ends(text))
+            return hp_text_fault(text, fault, "a %s has %u numbers, here are %u", hp_object_name(object), n, i);
+        if (!hp_text_float(text, &words[i])) return hp_text_fault(text, fault, "not a number");
+    }
+    if (!line_ends(text))
+        return hp_text_fault(text, fault, "a %s has %u numbers, here are more", hp_object_name(object), n);
+    const char *wrong = hp_object_fault(object, words);
+    if (!wrong) return HP_OK;
+    text->at = text->line_start;
+    return hp_text_fault(text, fault, "%s", wrong);
+}
+
+/* A first line whose first field is no number. */
+static bool at_header(hp_text text) {
+    float value;
+    return !hp_text_float(&text, &value);
+}
+
+static hp_status read_lines(hp_text *text, hp_object object, hp_objects *objects, hp_fault *fault) {
+    unsigned n = hp_object_words(object);
+    bool first = true;
+    for (; !hp_text_at_end(text); hp_text_next_line(text)) {
+        if (line_ends(text)) continue;
+        bool header = first && at_header(*text);
+        first = false;
+        if (header) continue;
+        if (!hp_grow((void **)&objects->words, &objects->room, objects->count, n * sizeof(float)))
+            return hp_fault_set(fault, HP_ERROR_MEMORY, "%s: out of memory", text->name);
+        hp_status status = read_object(text, object, objects->words + objects->count * n, fault);
+        if (status != HP_OK) return status;
+        objects->count++;
+    }
+    if (objects->count > 0) return HP_OK;
+    return hp_fault_set(fault, HP_ERROR_INPUT, "%s: no %s in the file", text->name, hp_object_name(object));
+}
+
+hp_status hp_csv_read(const hp_bytes *bytes, hp_object object, hp_objects *objects, hp_fault *fault) {
+    *objects = (hp_objects){0};
+    hp_text text = hp_text_open(bytes);
+    hp_status status = read_lines(&text, object, objects, fault);
+    hp_text_close(&text);
+    if (status != HP_OK) hp_objects_free(objects);
+    return status;
+}
+
+hp_status hp_csv_load(const char *path, hp_object object, hp_objects *objects, hp_fault *fault) {
+    *objects = (hp_objects){0};
+    hp_bytes bytes;
+    hp_status status = hp_bytes_read(path, &bytes, fault);
+    if (status != HP_OK) return status;
+    status = hp_csv_read(&bytes, object, objects, fault);
+    hp_bytes_free(&bytes);
+    return status;
+}

@@ -1,0 +1,22 @@
+/* Objects as text: one a line, its words in the order of objects.def, with commas between.
+ *
+ * Decimal (the nearest binary32) or hexadecimal floats; blanks are free; '#' begins a comment; empty lines count for
+ * nothing; a first line that does not begin with a number is a header. */
+#ifndef HITPIPE_HOST_CSV_H
+#define HITPIPE_HOST_CSV_H
+
+#include "host/import/bytes.h"
+
+typedef struct hp_objects {
+    float *words;
+    size_t count, room; /* objects */
+} hp_objects;
+
+/* HP_ERROR_INPUT "file:line:column: ...": not a number, too few or many, an object that hp_object_fault refuses, or
+ * none at all. HP_ERROR_MEMORY. On error *objects is empty. The caller frees with hp_objects_free. */
+hp_status hp_csv_read(const hp_bytes *bytes, hp_object object, hp_objects *objects, hp_fault *fault);
+hp_status hp_csv_load(const char *path, hp_object object, hp_objects *objects, hp_fault *fault);
+
+void hp_objects_free(hp_objects *objects);
+
+#endif
