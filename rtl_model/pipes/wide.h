@@ -1,7 +1,8 @@
 /* The pipes as wide lanes: one source (wide.c) compiled once per instruction set, chosen at run time.
  *
  * Same bits as hp_pipe_test, always. Only the quick engine and the benches call these; primaries lie in structure-of-
- * arrays, as in the block RAM of the primary register file, and one prepared secondary at a time meets all of them. */
+ * arrays, as in the block RAM of the primary register file, and one prepared secondary at a time meets all of them.
+ */
 #ifndef HITPIPE_PIPES_WIDE_H
 #define HITPIPE_PIPES_WIDE_H
 
@@ -12,8 +13,8 @@ enum {
     HP_PREPARED_MAX = 32 /* most prepared words of a secondary */
 };
 
-/* A packet of primaries: word w of primary i is word[w][i]. Entries from `count` up to the next multiple of 16 must be
- * zero: they are computed and ignored. */
+/* A packet of primaries: word w of primary i is word[w][i]. Entries from `count` up to the next multiple of 16 must
+ * be zero: they are computed and ignored. */
 typedef struct hp_lanes {
     _Alignas(64) float word[HP_OBJECT_WORDS_MAX][HP_PACKET_PRIMARIES];
 } hp_lanes;
@@ -32,15 +33,15 @@ typedef struct hp_pairs_out {
 } hp_pairs_out;
 
 typedef struct hp_wide_pipe {
-    /* Prepares n <= HP_BLOCK secondaries (objects in DDR word order, `words` floats each) for the two below: `prepared`
-     * floats each, 64-byte aligned. With matrix != NULL they pass through the transformer first. */
+    /* Prepares n <= HP_BLOCK secondaries (objects in DDR word order, `words` floats each) for the two below:
+     * `prepared` floats each, 64-byte aligned. With matrix != NULL they pass through the transformer first. */
     void (*prepare)(const float *secondaries, size_t n, const float *matrix, bool flush, float *prepared);
     /* Mode closest: tests primaries [from, to) (from a multiple of 16) against n prepared secondaries, numbered from
      * `index`, keeping in *best the smallest T, of equal ones the first. */
-    void (*closest)(const hp_lanes *lanes, unsigned from, unsigned to, const float *prepared, size_t n, uint32_t index,
-                    bool flush, hp_best *best);
-    /* Mode any: as closest, but keeps the hit of lowest index; a primary with best->index set is not tested again where
-     * that saves work. */
+    void (*closest)(const hp_lanes *lanes, unsigned from, unsigned to, const float *prepared, size_t n,
+                    uint32_t index, bool flush, hp_best *best);
+    /* Mode any: as closest, but keeps the hit of lowest index; a primary with best->index set is not tested again
+     * where that saves work. */
     void (*any)(const hp_lanes *lanes, unsigned from, unsigned to, const float *prepared, size_t n, uint32_t index,
                 bool flush, hp_best *best);
     /* Modes all and zip: pair i is primary (i * primary_step) with secondary i; primary_step 0 or 1. Whole objects in
