@@ -213,8 +213,8 @@ hpt_ray_triangle_scale hpt_scale_ray_triangle(const float ray[6], const float tr
     return scale;
 }
 
-bool hpt_within_band(const hpt_ray_triangle_scale *scale) {
-    return fabs(scale->margin) <= fmax(1e-6 * scale->L, 0x1p-21 * scale->C);
+double hpt_band(const hpt_ray_triangle_scale *scale) {
+    return fmax(1e-6 * scale->L, 0x1p-21 * scale->C);
 }
 
 double hpt_T_error(const hpt_crossing *exact, const hpt_ray_triangle_scale *scale, float T) {

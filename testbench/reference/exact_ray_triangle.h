@@ -36,8 +36,8 @@ typedef struct hpt_ray_triangle_scale {
 
 hpt_ray_triangle_scale hpt_scale_ray_triangle(const float ray[6], const float triangle[9]);
 
-/* The band in which either flag is right: |margin| <= max(1e-6 L, 2^-21 C). */
-bool hpt_within_band(const hpt_ray_triangle_scale *scale);
+/* The band in which either flag is right: |margin| <= max(1e-6 L, 2^-21 C). A length. */
+double hpt_band(const hpt_ray_triangle_scale *scale);
 
 /* Error of a hit's T: the length |T - exact| |D|, over max(L, C) and over 1/|cos|. Exact T of a miss has none:
  * crosses must hold. */
