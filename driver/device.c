@@ -1,0 +1,139 @@
+/* Opening and closing a device, and what every call has in common. */
+#include "device.h"
+#include <hitpipe/pipe.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { PROGRESS_MS = 50 };
+
+/* ---- open ---- */
+
+static hp_status open_model(const hp_device_def *def, hp_transport **transport, hp_message *message) {
+    char why[HP_CONFIG_MESSAGE];
+    if (hp_config_check(&def->board, why)) return hp_say(message, HP_ERROR_CONFIG, "%s", why);
+    if (!hp_isa_choose(def->isa))
+        return hp_say(message, HP_ERROR_USAGE, "instruction set %s is not to be had here",
+                      def->isa ? def->isa : "in HP_ISA");
+    if (def->vcd && !def->clocked) return hp_say(message, HP_ERROR_USAGE, "only the clocked engine writes waveforms");
+    const hp_board_def board = {
+        .config = def->board,
+        .engine = def->clocked ? HP_ENGINE_CLOCKED : HP_ENGINE_QUICK,
+        .isa = def->isa,
+        .threads = def->threads,
+        .vcd = def->vcd,
+        .vcd_context = def->vcd_context,
+    };
+    hp_status status = hp_transport_model(&board, transport);
+    return status ? hp_say(message, status, "cannot make the board: %s", hp_status_text(status)) : HP_OK;
+}
+
+static hp_status open_target(const hp_device_def *def, hp_transport **transport, hp_message *message) {
+    if (def->cookie != HP_DEVICE_COOKIE)
+        return hp_say(message, HP_ERROR_USAGE, "the device def does not come from hp_default_device_def");
+    if (!def->target || strcmp(def->target, "model") == 0) return open_model(def, transport, message);
+    if (strcmp(def->target, "null") == 0) {
+        hp_status status = hp_transport_null(transport);
+        return status ? hp_say(message, status, "%s", hp_status_text(status)) : HP_OK;
+    }
+    return hp_say(message, HP_ERROR_NO_DEVICE, "no target \"%.60s\": there are model and null", def->target);
+}
+
+static void identify_target(hp_device *device, bool clocked) {
+    hp_board *board = hp_transport_model_board(device->transport);
+    device->identity.target = device->transport->ops->name;
+    device->identity.engine = !board ? "hardware" : clocked ? "clocked" : "quick";
+    device->identity.isa = board ? hp_board_isa(board) : "";
+}
+
+hp_status hp_open_transport(const hp_device_def *def, hp_transport *transport, hp_device **out, hp_message *message) {
+    *out = NULL;
+    hp_device *device = calloc(1, sizeof *device);
+    if (!device) {
+        transport->ops->close(transport);
+        return hp_say(message, HP_ERROR_MEMORY, "%s", hp_status_text(HP_ERROR_MEMORY));
+    }
+    device->transport = transport;
+    device->unchecked = def->unchecked;
+    device->in_flight = def->in_flight;
+    device->progress = def->progress;
+    device->progress_context = def->progress_context;
+    identify_target(device, def->clocked);
+    hp_status status = hp_queue_open(&device->queue, transport, &device->message, def->timeout_ms, def->retries);
+    if (!status) status = hp_begin(device);
+    *message = device->message;
+    if (status)
+        hp_close(device);
+    else
+        *out = device;
+    return status;
+}
+
+static _Thread_local hp_message open_message; /* of this thread's last hp_open */
+
+hp_status hp_open(const hp_device_def *def, hp_device **device) {
+    hp_transport *transport;
+    open_message.text[0] = '\0';
+    if (!device) return hp_say(&open_message, HP_ERROR_USAGE, "no place for the device");
+    *device = NULL;
+    if (!def) return hp_say(&open_message, HP_ERROR_USAGE, "no device def");
+    hp_status status = open_target(def, &transport, &open_message);
+    return status ? status : hp_open_transport(def, transport, device, &open_message);
+}
+
+void hp_close(hp_device *device) {
+    if (!device) return;
+    device->transport->ops->close(device->transport);
+    hp_queue_close(&device->queue);
+    free(device->batch_primary);
+    free(device->batch_secondary);
+    free(device->batch_records);
+    free(device);
+}
+
+const hp_identity *hp_identify(const hp_device *device) {
+    return device ? &device->identity : NULL;
+}
+
+const char *hp_error_message(const hp_device *device) {
+    return device ? device->message.text : open_message.text;
+}
+
+/* ---- calls ---- */
+
+hp_status hp_begin(hp_device *device) {
+    hp_status status = hp_queue_settle(&device->queue);
+    if (!status && device->queue.forgotten) hp_end(device, HP_OK);
+    if (!status && !device->session) status = hp_say_hello(device);
+    if (!status && device->transform_due) status = hp_send_transform(device);
+    return status;
+}
+
+hp_status hp_end(hp_device *device, hp_status status) {
+    if (device->queue.forgotten) {
+        device->queue.forgotten = false;
+        device->session = false;
+        device->scene = (hp_object)0;
+    }
+    return status;
+}
+
+hp_status hp_ask(hp_device *device, hp_command *command) {
+    hp_queue_post(&device->queue, command);
+    return hp_end(device, hp_queue_finish(&device->queue));
+}
+
+hp_status hp_take_nothing(hp_command *command, const uint8_t *payload, uint32_t length, bool last) {
+    (void)command, (void)payload;
+    return length == 0 && last ? HP_OK : HP_ERROR_LENGTH;
+}
+
+bool hp_tell_progress(hp_device *device, uint64_t done, uint64_t total) {
+    if (!device->progress) return true;
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    uint64_t ms = (uint64_t)now.tv_sec * 1000 + (uint64_t)now.tv_nsec / 1000000;
+    if (device->progress_ms && ms < device->progress_ms + PROGRESS_MS) return true;
+    device->progress_ms = ms;
+    return device->progress(device->progress_context, done, total);
+}
