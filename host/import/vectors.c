@@ -67,21 +67,22 @@ hp_status hp_vectors_add_group(hp_vectors *vectors, const char *name, const char
     return HP_OK;
 }
 
-static bool resize(uint32_t **words, size_t records, unsigned each) {
-    uint32_t *grown = reallocarray(*words, records, each * sizeof **words);
-    if (grown) *words = grown;
-    return grown;
+/* The array with another size; when there is no memory, as it was, and *done false. */
+static void *resize(void *array, size_t records, unsigned words, bool *done) {
+    void *resized = reallocarray(array, records, words * sizeof(uint32_t));
+    if (!resized) *done = false;
+    return resized ? resized : array;
 }
 
 /* Makes room for one more record in all four arrays. */
 static bool make_room(hp_vectors *vectors) {
     if (vectors->count < vectors->room) return true;
     size_t wanted = vectors->room ? 2 * vectors->room : 64;
-    size_t *lines = reallocarray(vectors->lines, wanted, sizeof *lines);
-    if (lines) vectors->lines = lines;
-    bool done = lines && resize(&vectors->primaries, wanted, primary_words(vectors)) &&
-                resize(&vectors->secondaries, wanted, secondary_words(vectors)) &&
-                resize(&vectors->answers, wanted, HP_VECTOR_ANSWER_WORDS);
+    bool done = true;
+    vectors->primaries = resize(vectors->primaries, wanted, primary_words(vectors), &done);
+    vectors->secondaries = resize(vectors->secondaries, wanted, secondary_words(vectors), &done);
+    vectors->answers = resize(vectors->answers, wanted, HP_VECTOR_ANSWER_WORDS, &done);
+    vectors->lines = resize(vectors->lines, wanted, sizeof(size_t) / sizeof(uint32_t), &done);
     if (done) vectors->room = wanted;
     return done;
 }
@@ -299,8 +300,13 @@ hp_status hp_vectors_read(const char *path, hp_vectors *vectors, hp_fault *fault
 /* ---- writing
  * --------------------------------------------------------------------------------------------------------- */
 
-static void write_words(FILE *file, const uint32_t *words, unsigned n, const char *after) {
-    for (unsigned i = 0; i < n; i++) fprintf(file, "%08" PRIx32 "%s", words[i], i + 1 < n ? " " : after);
+/* n words of 32 bits, floats or not, as bits. */
+static void write_words(FILE *file, const void *words, unsigned n, const char *after) {
+    for (unsigned i = 0; i < n; i++) {
+        uint32_t word;
+        memcpy(&word, (const char *)words + i * sizeof word, sizeof word);
+        fprintf(file, "%08" PRIx32 "%s", word, i + 1 < n ? " " : after);
+    }
 }
 
 static void write_heading(const hp_vector_group *group, FILE *file) {

@@ -36,10 +36,10 @@ typedef struct hp_vectors {
     char *generator; /* program, its version and seed */
     char *oracle;    /* program and its version */
     size_t count;
-    uint32_t *primaries;   /* count objects, hp_object_words of the pair's primary each */
-    uint32_t *secondaries; /* likewise */
-    uint32_t *answers;     /* HP_VECTOR_ANSWER_WORDS a record */
-    size_t *lines;         /* of the file: where each record stands, from 1; 0 for one that was not read */
+    float *primaries;   /* count objects, hp_object_words of the pair's primary each; any bits */
+    float *secondaries; /* likewise */
+    uint32_t *answers;  /* bits: HP_VECTOR_ANSWER_WORDS a record */
+    size_t *lines;      /* of the file: where each record stands, from 1; 0 for one that was not read */
     hp_vector_group *groups;
     size_t group_count;
     size_t room, group_room; /* allocated */

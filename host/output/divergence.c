@@ -22,18 +22,23 @@ hp_divergence hp_diverge(const hp_vectors *vectors, const hp_result *answers) {
     return divergence;
 }
 
-/* One record, taken apart. */
+/* One record, taken apart into bits. */
 typedef struct record {
     hp_object primary, secondary;
-    const uint32_t *primary_words, *secondary_words, *expected;
-    uint32_t got[HP_VECTOR_ANSWER_WORDS];
+    uint32_t primary_words[HP_OBJECT_WORDS_MAX], secondary_words[HP_OBJECT_WORDS_MAX];
+    uint32_t expected[HP_VECTOR_ANSWER_WORDS], got[HP_VECTOR_ANSWER_WORDS];
 } record;
+
+static void take_object(uint32_t *words, hp_object object, const float *objects, size_t i) {
+    unsigned n = hp_object_words(object);
+    memcpy(words, objects + i * n, n * sizeof *words);
+}
 
 static record take(const hp_vectors *vectors, size_t i, const hp_result *answer) {
     record r = {.primary = hp_pair_primary(vectors->pair), .secondary = hp_pair_secondary(vectors->pair)};
-    r.primary_words = vectors->primaries + i * hp_object_words(r.primary);
-    r.secondary_words = vectors->secondaries + i * hp_object_words(r.secondary);
-    r.expected = expected_of(vectors, i);
+    take_object(r.primary_words, r.primary, vectors->primaries, i);
+    take_object(r.secondary_words, r.secondary, vectors->secondaries, i);
+    memcpy(r.expected, expected_of(vectors, i), sizeof r.expected);
     memcpy(r.got, answer, sizeof r.got);
     return r;
 }
