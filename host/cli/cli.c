@@ -1,0 +1,146 @@
+#include "host/cli/cli.h"
+
+#include "host/import/board_json.h"
+#include "host/output/file.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { KEY_TARGET = 0x1000, KEY_BOARD, KEY_ENGINE, KEY_ISA, KEY_THREADS, KEY_REPORT, KEY_VCD, KEY_JSON };
+
+static const struct argp_option option_table[] = {
+    {"target", KEY_TARGET, "TARGET", 0, "where packets go: model (default), null", 90},
+    {"board", KEY_BOARD, "NAME|FILE.json", 0, "the board to simulate: usb3 (default), wscg2007, ideal, or a file",
+     90},
+    {"engine", KEY_ENGINE, "quick|clocked", 0, "how board time is found; both give the same counts (default quick)",
+     90},
+    {"isa", KEY_ISA, "NAME", 0, "instruction set of the model's arithmetic: plain, sse2, avx2, avx512, neon", 90},
+    {"threads", KEY_THREADS, "N", 0, "threads of the model's arithmetic (default: one a processor)", 90},
+    {"report", KEY_REPORT, "FILE.json", 0, "write counts and times; - is standard output", 90},
+    {"vcd", KEY_VCD, "FILE", 0, "write the board's waveform (clocked engine)", 90},
+    {"json", KEY_JSON, NULL, 0, "print for machines, as JSON", 90},
+    {0},
+};
+
+static void set_board(hp_cli *cli, const char *name, struct argp_state *state) {
+    hp_fault fault;
+    if (hp_board_load(name, &cli->device.board, &fault) != HP_OK)
+        argp_failure(state, hp_status_exit(fault.status), 0, "%s", fault.message);
+}
+
+static error_t parse(int key, char *argument, struct argp_state *state) {
+    hp_cli *cli = state->input;
+    char *end;
+    switch (key) {
+    case KEY_TARGET:
+        cli->device.target = argument;
+        return 0;
+    case KEY_BOARD:
+        set_board(cli, argument, state);
+        return 0;
+    case KEY_ENGINE:
+        cli->device.clocked = strcmp(argument, "clocked") == 0;
+        if (!cli->device.clocked && strcmp(argument, "quick") != 0)
+            argp_error(state, "--engine is quick or clocked, not '%s'", argument);
+        return 0;
+    case KEY_ISA:
+        cli->device.isa = argument;
+        return 0;
+    case KEY_THREADS:
+        cli->device.threads = (unsigned)strtoul(argument, &end, 10);
+        if (*end || end == argument || cli->device.threads > 1024)
+            argp_error(state, "--threads takes a number from 0 to 1024, not '%s'", argument);
+        return 0;
+    case KEY_REPORT:
+        cli->report = argument;
+        return 0;
+    case KEY_VCD:
+        cli->vcd_path = argument;
+        return 0;
+    case KEY_JSON:
+        cli->json = true;
+        return 0;
+    case ARGP_KEY_END:
+        if (cli->vcd_path && !cli->device.clocked) argp_error(state, "--vcd needs --engine clocked");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+const struct argp hp_cli_argp = {.options = option_table, .parser = parse};
+
+hp_cli hp_cli_begin(const char *verb) {
+    return (hp_cli){.verb = verb, .device = hp_default_device_def(), .bar = hp_progress_bar_new()};
+}
+
+static void take_waveform(void *context, const char *text, size_t n) {
+    fwrite(text, 1, n, context); /* a failure shows in hp_cli_close */
+}
+
+hp_status hp_cli_open(hp_cli *cli, hp_device **device, hp_fault *fault) {
+    *device = NULL;
+    if (hp_file_probe(cli->report, fault) != HP_OK) return fault->status;
+    if (cli->vcd_path) {
+        cli->vcd = hp_file_create(cli->vcd_path, fault);
+        if (!cli->vcd) return fault->status;
+        cli->device.vcd = take_waveform;
+        cli->device.vcd_context = cli->vcd;
+    }
+    cli->device.progress = hp_progress_bar_show;
+    cli->device.progress_context = &cli->bar;
+    hp_status status = hp_open(&cli->device, device);
+    return status == HP_OK ? HP_OK : hp_cli_device_fault(NULL, status, NULL, fault);
+}
+
+hp_status hp_cli_close(hp_cli *cli, hp_device *device, hp_fault *fault) {
+    hp_close(device);
+    hp_progress_bar_end(&cli->bar);
+    FILE *vcd = cli->vcd;
+    cli->vcd = NULL;
+    return vcd ? hp_file_finish(vcd, cli->vcd_path, fault) : HP_OK;
+}
+
+hp_status hp_cli_device_fault(const hp_device *device, hp_status status, const char *place, hp_fault *fault) {
+    const char *words = hp_error_message(device);
+    if (!words || !*words) words = hp_status_text(status);
+    return hp_fault_set(fault, status, "%s%s%s", place ? place : "", place ? ": " : "", words);
+}
+
+int hp_cli_end(hp_cli *cli, hp_status status, const hp_fault *fault) {
+    hp_progress_bar_end(&cli->bar);
+    if (status != HP_OK) fprintf(stderr, "%s: %s\n", cli->verb, fault->message);
+    return hp_status_exit(status);
+}
+
+bool hp_cli_numbers(const char *text, double *numbers, size_t n) {
+    for (size_t i = 0; i < n; i++) {
+        char *end;
+        numbers[i] = strtod(text, &end);
+        if (end == text) return false;
+        text = end + strspn(end, " \t,");
+    }
+    return *text == 0;
+}
+
+bool hp_cli_pair(const char *text, size_t *first, size_t *second) {
+    unsigned long a, b;
+    int end = -1;
+    if (sscanf(text, "%9lux%9lu%n", &a, &b, &end) != 2 || text[end] || a == 0 || b == 0) return false;
+    *first = a;
+    *second = b;
+    return true;
+}
+
+const char *hp_cli_count(uint64_t count, char text[HP_COUNT_TEXT]) {
+    char digits[24];
+    int n = snprintf(digits, sizeof digits, "%" PRIu64, count), at = 0;
+    for (int i = 0; i < n; i++) {
+        if (i > 0 && (n - i) % 3 == 0) text[at++] = ',';
+        text[at++] = digits[i];
+    }
+    text[at] = 0;
+    return text;
+}

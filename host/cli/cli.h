@@ -1,0 +1,59 @@
+/* What the verbs of the command line share: the options of every verb, opening the board they name, and the ways to
+ * end.
+ *
+ * A verb is int hp_verb_NAME(int argc, char **argv): argv[0] is "hitpipe NAME", the rest are its arguments; it
+ * returns the exit status. It parses with argp and takes hp_cli_argp as a child, whose input is its hp_cli. */
+#ifndef HITPIPE_HOST_CLI_H
+#define HITPIPE_HOST_CLI_H
+
+#include "host/import/fault.h"
+#include "host/output/progress.h"
+
+#include <hitpipe/hitpipe.h>
+
+#include <argp.h>
+#include <stdio.h>
+
+#define HP_VERB(name, summary) int hp_verb_##name(int argc, char **argv);
+#include "host/cli/verbs.def"
+#undef HP_VERB
+
+typedef struct hp_cli {
+    const char *verb;     /* "hitpipe trace" */
+    hp_device_def device; /* --target, --board, --engine, --isa, --threads */
+    const char *report;   /* --report */
+    const char *vcd_path; /* --vcd */
+    bool json;            /* --json */
+    FILE *vcd;
+    hp_progress_bar bar;
+} hp_cli;
+
+/* The options above, for argp_child. Wrong values end the program with status 2 or, for a board, 3. */
+extern const struct argp hp_cli_argp;
+
+hp_cli hp_cli_begin(const char *verb);
+
+/* Opens the board that the options name. The progress bar shows the driver's progress under bar.what.
+ * Errors as hp_open; HP_ERROR_IO: the waveform cannot be written. */
+hp_status hp_cli_open(hp_cli *cli, hp_device **device, hp_fault *fault);
+
+/* Closes the board (NULL is fine) and the waveform. HP_ERROR_IO: the waveform was not written whole. */
+hp_status hp_cli_close(hp_cli *cli, hp_device *device, hp_fault *fault);
+
+/* Status and words of the last error of a device, as a fault; `place` comes before the words unless NULL. */
+hp_status hp_cli_device_fault(const hp_device *device, hp_status status, const char *place, hp_fault *fault);
+
+/* Says what went wrong on standard error, if anything did; the exit status. */
+int hp_cli_end(hp_cli *cli, hp_status status, const hp_fault *fault);
+
+/* Parses exactly n numbers with commas or blanks between. */
+bool hp_cli_numbers(const char *text, double *numbers, size_t n);
+
+/* Parses two whole numbers from 1 on with an 'x' between. */
+bool hp_cli_pair(const char *text, size_t *first, size_t *second);
+
+/* Writes a count with commas between its thousands into `text`, and returns it. */
+enum { HP_COUNT_TEXT = 32 };
+const char *hp_cli_count(uint64_t count, char text[HP_COUNT_TEXT]);
+
+#endif

@@ -1,0 +1,223 @@
+/* hitpipe info: the boards there are, the knobs of one, and what its pipes are made of. */
+#include "host/cli/cli.h"
+#include "host/output/file.h"
+#include "host/output/report.h"
+
+#include <hitpipe/pipe.h>
+
+#include <inttypes.h>
+#include <string.h>
+
+enum { KEY_PIPES = 'p', KEY_CONFIG = 'c' };
+
+typedef struct info_options {
+    hp_cli cli;
+    bool pipes, config;
+} info_options;
+
+static const struct argp_option option_table[] = {
+    {"pipes", KEY_PIPES, NULL, 0, "operators, levels and latency of every pipe under the board's operator table", 1},
+    {"config", KEY_CONFIG, NULL, 0, "every knob of the board: value, range, meaning", 1},
+    {0},
+};
+
+static error_t parse(int key, char *argument, struct argp_state *state) {
+    info_options *info = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &info->cli;
+        return 0;
+    case KEY_PIPES:
+        info->pipes = true;
+        return 0;
+    case KEY_CONFIG:
+        info->config = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        argp_error(state, "info takes no argument, but here is '%s'", argument);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_child children[] = {{&hp_cli_argp, 0, "Board and output:", 90}, {0}};
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .doc = "Shows the boards found and what each can do.\v"
+           "Of the pipes: operators as counted in the operator graph; levels: operators on the longest path; clocks: "
+           "latency; interval: clocks between two tests in a lane.",
+    .children = children,
+};
+
+/* ---- pipes ---- */
+
+static const hp_pair pairs[] = {
+#define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, prepared) HP_PAIR_##NAME,
+#include <hitpipe/pairs.def>
+#undef HP_PAIR
+};
+
+enum { PAIR_COUNT = sizeof pairs / sizeof pairs[0] };
+
+static json_t *pipe_json(hp_pair pair, const hp_config *board) {
+    hp_pipe_cost cost = hp_pipe_cost_of(pair, board);
+    json_t *pipe = json_object();
+    hp_report_set(pipe, "pair", json_string(hp_pair_name(pair)));
+    hp_report_set(pipe, "resident", json_boolean(board->pipes >> pair & 1));
+    const struct {
+        const char *key;
+        unsigned value;
+    } counts[] = {
+        {"multipliers", cost.multipliers},
+        {"dividers", cost.dividers},
+        {"square_roots", cost.square_roots},
+        {"adders", cost.adders},
+        {"subtractors", cost.subtractors},
+        {"comparators", cost.comparators},
+        {"ands", cost.ands},
+        {"ors", cost.ors},
+        {"selects", cost.selects},
+        {"inputs", cost.inputs},
+        {"outputs", cost.outputs},
+        {"levels", cost.levels},
+        {"clocks", cost.clocks},
+        {"clocks_F", cost.clocks_F},
+        {"clocks_T", cost.clocks_T},
+        {"clocks_CP", cost.clocks_CP},
+        {"interval", cost.interval},
+    };
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++)
+        hp_report_set(pipe, counts[i].key, json_integer(counts[i].value));
+    return pipe;
+}
+
+static void print_pipes(const hp_config *board) {
+    printf("Pipes under the operator table of board '%s':\n\n", board->name);
+    printf("%-18s %4s %4s %5s %4s %4s %4s %4s %7s %7s %9s\n", "pair", "mul", "div", "sqrt", "add", "sub", "cmp",
+           "and", "levels", "clocks", "interval");
+    for (size_t i = 0; i < PAIR_COUNT; i++) {
+        hp_pipe_cost cost = hp_pipe_cost_of(pairs[i], board);
+        printf("%-18s %4u %4u %5u %4u %4u %4u %4u %7u %7u %9u%s\n", hp_pair_name(pairs[i]), cost.multipliers,
+               cost.dividers, cost.square_roots, cost.adders, cost.subtractors, cost.comparators, cost.ands,
+               cost.levels, cost.clocks, cost.interval, board->pipes >> pairs[i] & 1 ? "" : "  (not resident)");
+    }
+}
+
+/* ---- knobs ---- */
+
+static json_t *config_json(const hp_config *board) {
+    json_t *knobs = json_array();
+    for (unsigned i = 0; hp_config_key(i); i++) {
+        char value[HP_CONFIG_MESSAGE], range[HP_CONFIG_MESSAGE];
+        hp_config_get(board, hp_config_key(i), value, sizeof value);
+        hp_config_range(i, range, sizeof range);
+        json_array_append_new(knobs, json_pack("{s:s, s:s, s:s, s:s}", "key", hp_config_key(i), "value", value,
+                                               "range", range, "meaning", hp_config_meaning(i)));
+    }
+    return knobs;
+}
+
+static void print_config(const hp_config *board) {
+    printf("%-32s %-18s %-34s %s\n", "key", "value", "range", "meaning");
+    for (unsigned i = 0; hp_config_key(i); i++) {
+        char value[HP_CONFIG_MESSAGE], range[HP_CONFIG_MESSAGE];
+        hp_config_get(board, hp_config_key(i), value, sizeof value);
+        hp_config_range(i, range, sizeof range);
+        printf("%-32s %-18s %-34s %s\n", hp_config_key(i), value, range, hp_config_meaning(i));
+    }
+}
+
+/* ---- boards ---- */
+
+static void pair_names(uint32_t resident, char *text, size_t room) {
+    size_t at = 0;
+    text[0] = 0;
+    for (size_t i = 0; i < PAIR_COUNT && at < room; i++)
+        if (resident >> pairs[i] & 1)
+            at += (size_t)snprintf(text + at, room - at, "%s%s", at ? ", " : "", hp_pair_name(pairs[i]));
+}
+
+static void print_board(const hp_device *device, const hp_config *config) {
+    const hp_identity *board = hp_identify(device);
+    char names[512], count[HP_COUNT_TEXT];
+    pair_names(board->pairs, names, sizeof names);
+    printf("target     %s\nboard      %s, protocol %u\nengine     %s, arithmetic on %s\n", board->target, board->name,
+           board->version, board->engine, board->isa);
+    printf("clock      %.6g MHz, lanes: %u, %s, subnormals %s\n", (double)board->clock_hz / 1e6, board->lanes,
+           board->loop_order == HP_PRIMARY_OUTER ? "primary-outer" : "secondary-outer",
+           board->subnormals == HP_FLUSH ? "flushed" : "gradual");
+    printf("packets    %u primaries, %u on the board at a time\n", board->packet_primaries, board->packet_buffers);
+    printf("memory     %s MiB for secondaries\n", hp_cli_count(board->ddr_bytes >> 20, count));
+    printf("link       %s duplex, %.4g MB/s to the board, %.4g MB/s to the host, %.4g us a transfer\n",
+           config->link_duplex ? "full" : "half", (double)config->link_to_board_rate / 1e6,
+           (double)config->link_to_host_rate / 1e6, (double)config->link_turnaround_ns / 1e3);
+    printf("pipes      %s\n\nPresets for --board:", names);
+    for (unsigned i = 0; hp_config_preset_name(i); i++) printf("%s %s", i ? "," : "", hp_config_preset_name(i));
+    fputs(". `hitpipe info --pipes` shows what a pipe costs, `--config` every knob.\n", stdout);
+}
+
+static json_t *board_json(const hp_device *device) {
+    const hp_identity *board = hp_identify(device);
+    char names[512];
+    pair_names(board->pairs, names, sizeof names);
+    json_t *json = hp_report_new(device);
+    hp_report_set(json, "protocol", json_integer(board->version));
+    hp_report_set(json, "clock_hz", json_integer((json_int_t)board->clock_hz));
+    hp_report_set(json, "lanes", json_integer(board->lanes));
+    hp_report_set(json, "packet_primaries", json_integer(board->packet_primaries));
+    hp_report_set(json, "packet_buffers", json_integer(board->packet_buffers));
+    hp_report_set(json, "ddr_bytes", json_integer((json_int_t)board->ddr_bytes));
+    hp_report_set(json, "pairs", json_string(names));
+    return json;
+}
+
+static hp_status show_boards(info_options *info, hp_fault *fault) {
+    hp_device *device;
+    hp_status status = hp_cli_open(&info->cli, &device, fault);
+    if (status == HP_OK && info->cli.json) {
+        json_t *boards = json_pack("[o]", board_json(device));
+        status = hp_report_write(boards, "-", fault);
+        json_decref(boards);
+    } else if (status == HP_OK) {
+        print_board(device, &info->cli.device.board);
+    }
+    hp_status closed = hp_cli_close(&info->cli, device, status == HP_OK ? fault : &(hp_fault){0});
+    return status == HP_OK ? closed : status;
+}
+
+static hp_status show_pipes_json(const hp_config *board, hp_fault *fault) {
+    json_t *pipes = json_array();
+    for (size_t i = 0; i < PAIR_COUNT; i++) json_array_append_new(pipes, pipe_json(pairs[i], board));
+    hp_status status = hp_report_write(pipes, "-", fault);
+    json_decref(pipes);
+    return status;
+}
+
+static hp_status show_config_json(const hp_config *board, hp_fault *fault) {
+    json_t *knobs = config_json(board);
+    hp_status status = hp_report_write(knobs, "-", fault);
+    json_decref(knobs);
+    return status;
+}
+
+int hp_verb_info(int argc, char **argv) {
+    info_options info = {.cli = hp_cli_begin(argv[0])};
+    argp_parse(&argp, argc, argv, 0, NULL, &info);
+    const hp_config *board = &info.cli.device.board;
+    hp_fault fault = {0};
+    hp_status status = HP_OK;
+    if (info.pipes && info.cli.json)
+        status = show_pipes_json(board, &fault);
+    else if (info.pipes)
+        print_pipes(board);
+    else if (info.config && info.cli.json)
+        status = show_config_json(board, &fault);
+    else if (info.config)
+        print_config(board);
+    else
+        status = show_boards(&info, &fault);
+    if (status == HP_OK) status = hp_file_finish(stdout, "-", &fault);
+    return hp_cli_end(&info.cli, status, &fault);
+}

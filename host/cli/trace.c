@@ -1,0 +1,275 @@
+/* hitpipe trace SCENE: rays against a mesh or a heightfield. */
+#include "host/cli/trace.h"
+
+#include "host/output/file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    KEY_OUT = 'o',
+    KEY_MODE = 'm',
+    KEY_PNG = 0x2000,
+    KEY_SIZE,
+    KEY_CAMERA,
+    KEY_EYE,
+    KEY_AT,
+    KEY_UP,
+    KEY_FOV,
+    KEY_RAYS,
+    KEY_FLIGHT,
+    KEY_MOVING,
+    KEY_RESAMPLE,
+    KEY_SPACING,
+    KEY_NO_SHADOWS,
+    MOST_FRAMES = 1000000
+};
+
+static const struct argp_option option_table[] = {
+    {NULL, 0, NULL, 0, "What is written:", 1},
+    {"out", KEY_OUT, "X.exr|X.csv", 0, "results: channels T, index, F, CP.X, CP.Y, CP.Z, or the columns of `query`",
+     1},
+    {"png", KEY_PNG, "X.png", 0, "a shaded picture", 1},
+    {"no-shadows", KEY_NO_SHADOWS, NULL, 0, "do not ask the board for the picture's shadows", 1},
+    {NULL, 0, NULL, 0, "The rays:", 2},
+    {"size", KEY_SIZE, "WxH", 0, "pixels of the picture (default 512x288)", 2},
+    {"eye", KEY_EYE, "X,Y,Z", 0, "where the camera stands (default: it sees the whole scene)", 2},
+    {"at", KEY_AT, "X,Y,Z", 0, "what it looks at (default: the middle of the scene)", 2},
+    {"up", KEY_UP, "X,Y,Z", 0, "which way is up in the picture (default 0,0,1)", 2},
+    {"fov", KEY_FOV, "DEGREES", 0, "vertical field of view (default 30)", 2},
+    {"camera", KEY_CAMERA, "EX,EY,EZ,CX,CY,CZ,FOV", 0, "--eye, --at and --fov at once", 2},
+    {"rays", KEY_RAYS, "F.csv", 0, "rays from a file, origin xyz and direction xyz a line", 2},
+    {"flight", KEY_FLIGHT, "N", 0, "N frames of one ray each, from a flight path, in random directions", 2},
+    {"moving", KEY_MOVING, NULL, 0, "with --flight: the transformer moves the scene every frame", 2},
+    {"mode", KEY_MODE, "MODE", 0, "closest (default), any, or, with --flight, all", 2},
+    {NULL, 0, NULL, 0, "Heightfields:", 3},
+    {"resample", KEY_RESAMPLE, "RxC", 0, "R rows by C columns, bilinear, corners on corners", 3},
+    {"spacing", KEY_SPACING, "X,Y", 0, "lengths between columns and between rows (default: the file's, or 1)", 3},
+    {0},
+};
+
+static void numbers(struct argp_state *state, const char *option, const char *text, double *values, size_t n) {
+    if (!hp_cli_numbers(text, values, n))
+        argp_error(state, "%s takes %zu numbers with commas between, not '%s'", option, n, text);
+}
+
+static void set_camera(trace_options *trace, const char *text, struct argp_state *state) {
+    double values[7];
+    numbers(state, "--camera", text, values, 7);
+    memcpy(trace->camera.eye, values, sizeof trace->camera.eye);
+    memcpy(trace->camera.at, values + 3, sizeof trace->camera.at);
+    trace->camera.fov = values[6];
+    trace->eye = trace->at = trace->fov = true;
+}
+
+static void set_flight(trace_options *trace, const char *text, struct argp_state *state) {
+    char *end;
+    trace->flight = strtoul(text, &end, 10);
+    if (*end || trace->flight == 0 || trace->flight > MOST_FRAMES)
+        argp_error(state, "--flight takes a number of frames from 1 to %d, not '%s'", MOST_FRAMES, text);
+}
+
+static bool ends_in(const char *path, const char *extension) {
+    size_t n = strlen(path), k = strlen(extension);
+    return n >= k && strcmp(path + n - k, extension) == 0;
+}
+
+static void check_together(const trace_options *trace, struct argp_state *state) {
+    bool camera = trace->eye || trace->at || trace->up || trace->fov;
+    if (!trace->scene_path) argp_error(state, "which scene?");
+    if (trace->flight && trace->rays) argp_error(state, "--flight and --rays exclude each other");
+    if ((trace->flight || trace->rays) && camera) argp_error(state, "a camera needs neither --flight nor --rays");
+    if ((trace->flight || trace->rays) && trace->png) argp_error(state, "--png needs a camera");
+    if (trace->png && trace->mode != HP_MODE_CLOSEST) argp_error(state, "--png needs --mode closest");
+    if (trace->moving && !trace->flight) argp_error(state, "--moving needs --flight");
+    if (trace->mode == HP_MODE_ALL && !trace->flight) argp_error(state, "--mode all needs --flight");
+    if (trace->flight && trace->out && ends_in(trace->out, ".exr")) argp_error(state, "a flight is written as .csv");
+    if (trace->out && !ends_in(trace->out, ".exr") && !ends_in(trace->out, ".csv") && trace->out[0] == '-')
+        argp_error(state, "--out takes a file; %s is none", trace->out);
+}
+
+static error_t parse(int key, char *argument, struct argp_state *state) {
+    trace_options *trace = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &trace->cli;
+        return 0;
+    case KEY_OUT:
+        trace->out = argument;
+        return 0;
+    case KEY_PNG:
+        trace->png = argument;
+        return 0;
+    case KEY_NO_SHADOWS:
+        trace->no_shadows = true;
+        return 0;
+    case KEY_RAYS:
+        trace->rays = argument;
+        return 0;
+    case KEY_MOVING:
+        trace->moving = true;
+        return 0;
+    case KEY_CAMERA:
+        set_camera(trace, argument, state);
+        return 0;
+    case KEY_FLIGHT:
+        set_flight(trace, argument, state);
+        return 0;
+    case KEY_EYE:
+        numbers(state, "--eye", argument, trace->camera.eye, 3);
+        trace->eye = true;
+        return 0;
+    case KEY_AT:
+        numbers(state, "--at", argument, trace->camera.at, 3);
+        trace->at = true;
+        return 0;
+    case KEY_UP:
+        numbers(state, "--up", argument, trace->camera.up, 3);
+        trace->up = true;
+        return 0;
+    case KEY_FOV:
+        numbers(state, "--fov", argument, &trace->camera.fov, 1);
+        trace->fov = true;
+        return 0;
+    case KEY_SPACING:
+        numbers(state, "--spacing", argument, trace->scene_def.spacing, 2);
+        if (trace->scene_def.spacing[0] == 0 || trace->scene_def.spacing[1] == 0)
+            argp_error(state, "--spacing: lengths between samples are not zero");
+        return 0;
+    case KEY_SIZE:
+        if (!hp_cli_pair(argument, &trace->width, &trace->height) || trace->width > 65536 || trace->height > 65536)
+            argp_error(state, "--size takes WxH, each from 1 to 65536, not '%s'", argument);
+        return 0;
+    case KEY_RESAMPLE:
+        if (!hp_cli_pair(argument, &trace->scene_def.rows, &trace->scene_def.columns))
+            argp_error(state, "--resample takes RxC, not '%s'", argument);
+        return 0;
+    case KEY_MODE:
+        trace->mode = hp_mode_from_name(argument);
+        if (!trace->mode || trace->mode == HP_MODE_ZIP)
+            argp_error(state, "--mode is closest, any or all, not '%s'", argument);
+        return 0;
+    case ARGP_KEY_ARG:
+        if (trace->scene_path) argp_error(state, "'%s' is one argument too many", argument);
+        trace->scene_path = argument;
+        return 0;
+    case ARGP_KEY_END:
+        check_together(trace, state);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_child children[] = {{&hp_cli_argp, 0, "Board and report:", 90}, {0}};
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "SCENE",
+    .doc = "Traces rays against a scene on the board.\v"
+           "SCENE is a heightfield (.exr, .pgm) or a mesh (.obj, .ply, .stl, or any other format of assimp).",
+    .children = children,
+};
+
+/* ---- running ---- */
+
+static hp_status take_counters(trace_run *run, hp_counters *counters, hp_fault *fault) {
+    hp_status status = hp_read_counters(run->device, true, counters);
+    return status == HP_OK ? HP_OK : hp_cli_device_fault(run->device, status, NULL, fault);
+}
+
+static hp_status bring_up(trace_run *run, hp_fault *fault) {
+    run->bar->what = "uploading";
+    hp_status status = hp_upload(run->device, HP_TRIANGLE, run->scene.mesh.words, run->scene.mesh.count);
+    if (status != HP_OK) return hp_cli_device_fault(run->device, status, run->options->scene_path, fault);
+    return take_counters(run, &run->upload, fault);
+}
+
+static hp_status write_report(trace_run *run, hp_fault *fault) {
+    const trace_options *options = run->options;
+    uint64_t clock_hz = hp_identify(run->device)->clock_hz;
+    hp_counters whole = run->upload;
+    hp_counters_add(&whole, &run->counters);
+    hp_report_counters(run->report, &whole, clock_hz);
+    hp_report_host(run->report, &whole, run->host_seconds);
+    hp_report_set(run->report, "seconds.scene_upload",
+                  json_real((double)run->upload.clocks_total / (double)clock_hz));
+    hp_report_set(run->report, "scene.file", json_string(options->scene_path));
+    hp_report_set(run->report, "scene.triangles", json_integer((json_int_t)run->scene.mesh.count));
+    hp_report_set(run->report, "scene.degenerate", json_integer((json_int_t)run->scene.mesh.degenerate));
+    hp_report_set(run->report, "mode", json_string(hp_mode_name(options->mode)));
+    hp_status status = HP_OK;
+    if (options->cli.report) status = hp_report_write(run->report, options->cli.report, fault);
+    if (status == HP_OK && options->cli.json) status = hp_report_write(run->report, "-", fault);
+    return status;
+}
+
+static hp_status run_on_board(trace_run *run, hp_fault *fault) {
+    const trace_options *options = run->options;
+    run->report = hp_report_new(run->device);
+    if (!run->report) return hp_fault_set(fault, HP_ERROR_MEMORY, "out of memory");
+    hp_status status = bring_up(run, fault);
+    if (status != HP_OK) return status;
+    status = options->flight ? trace_flight(run, fault)
+             : options->rays ? trace_rays(run, fault)
+                             : trace_picture(run, fault);
+    return status == HP_OK ? write_report(run, fault) : status;
+}
+
+void trace_summary(const trace_run *run, size_t rays, size_t hits) {
+    const hp_identity *board = hp_identify(run->device);
+    char a[HP_COUNT_TEXT], b[HP_COUNT_TEXT], c[HP_COUNT_TEXT];
+    const hp_scene *scene = &run->scene;
+    printf("scene    %s: %s triangles", run->options->scene_path, hp_cli_count(scene->mesh.count, a));
+    if (scene->rows) printf(" from %zu x %zu samples", scene->rows, scene->columns);
+    if (scene->mesh.degenerate) printf(", %s without area", hp_cli_count(scene->mesh.degenerate, b));
+    hp_counters whole = run->upload;
+    hp_counters_add(&whole, &run->counters);
+    double hz = (double)board->clock_hz, total = (double)whole.clocks_total;
+    printf("\nrays     %s, %s hit (%.1f %%); %s tests\n", hp_cli_count(rays, a), hp_cli_count(hits, b),
+           rays ? 100 * (double)hits / (double)rays : 0, hp_cli_count(whole.tests_run, c));
+    printf("board    %s at %.6g MHz, %s engine: %.6g s = upload %.4g + compute %.4g + read-back %.4g + idle %.4g s\n",
+           board->name, hz / 1e6, board->engine, total / hz, (double)whole.phase_upload / hz,
+           (double)whole.phase_compute / hz, (double)whole.phase_read_back / hz, (double)whole.phase_idle / hz);
+    printf("         %s clocks; a test issued in %.1f %% of them\n", hp_cli_count(whole.clocks_total, a),
+           total > 0 ? 100 * (double)whole.clocks_issue / total : 0);
+    printf("host     %.2f s on %s: %.4g million tests a second\n", run->host_seconds, board->isa,
+           run->host_seconds > 0 ? (double)whole.tests_run / run->host_seconds / 1e6 : 0);
+}
+
+static void say_files(const trace_options *options) {
+    const char *paths[] = {options->out, options->png, options->cli.report};
+    const char *before = "wrote    ";
+    for (int i = 0; i < 3; i++) {
+        if (!paths[i] || strcmp(paths[i], "-") == 0) continue;
+        printf("%s%s", before, paths[i]);
+        before = ", ";
+    }
+    if (*before == ',') putchar('\n');
+}
+
+static hp_status probe(const trace_options *options, hp_fault *fault) {
+    hp_status status = hp_file_probe(options->out, fault);
+    return status == HP_OK ? hp_file_probe(options->png, fault) : status;
+}
+
+int hp_verb_trace(int argc, char **argv) {
+    trace_options options = {.cli = hp_cli_begin(argv[0]), .mode = HP_MODE_CLOSEST, .width = 512, .height = 288};
+    argp_parse(&argp, argc, argv, 0, NULL, &options);
+    hp_fault fault = {0};
+    trace_run run = {.options = &options, .bar = &options.cli.bar};
+    bool taken = options.cli.json || (options.cli.report && strcmp(options.cli.report, "-") == 0) ||
+                 (options.out && strcmp(options.out, "-") == 0);
+    run.words = !taken; /* standard output belongs to something else */
+    hp_status status = probe(&options, &fault);
+    if (status == HP_OK) status = hp_scene_load(options.scene_path, &options.scene_def, &run.scene, &fault);
+    if (status == HP_OK) status = hp_cli_open(&options.cli, &run.device, &fault);
+    if (status == HP_OK) status = run_on_board(&run, &fault);
+    hp_fault late = {0};
+    hp_status closed = hp_cli_close(&options.cli, run.device, &late);
+    if (status == HP_OK && closed != HP_OK) status = closed, fault = late;
+    if (status == HP_OK && run.words) say_files(&options);
+    json_decref(run.report);
+    hp_scene_free(&run.scene);
+    return hp_cli_end(&options.cli, status, &fault);
+}

@@ -1,0 +1,102 @@
+#include "host/output/picture.h"
+
+#include "host/rays/vector.h"
+
+typedef hp_vector colour; /* linear red, green, blue */
+
+/* The sun stands in the west-north-west, 30 degrees high: from the left of the default view. */
+static const hp_vector sun = {-0.80, 0.32, 0.51};
+static const colour sunlight = {1.28, 1.16, 0.96}, skylight = {0.20, 0.25, 0.33};
+static const colour horizon = {0.62, 0.74, 0.86}, zenith = {0.13, 0.28, 0.58};
+
+/* Tints from the lowest to the highest point. */
+static const colour tints[] = {
+    {0.070, 0.165, 0.085}, {0.150, 0.270, 0.100}, {0.330, 0.380, 0.150}, {0.520, 0.430, 0.220},
+    {0.420, 0.280, 0.160}, {0.400, 0.330, 0.280}, {0.800, 0.790, 0.780},
+};
+
+static colour mix(colour a, colour b, double share) {
+    return hp_vector_along(a, share, hp_vector_sub(b, a));
+}
+
+static colour times(colour a, colour b) {
+    return (colour){a.x * b.x, a.y * b.y, a.z * b.z};
+}
+
+static colour tint(const hp_bounds *bounds, double z) {
+    const int last = sizeof tints / sizeof tints[0] - 1;
+    double relief = bounds->high[2] - bounds->low[2];
+    double place = relief > 0 ? fmin(fmax((z - bounds->low[2]) / relief, 0), 1) * last : last / 2.0;
+    int below = place < last ? (int)place : last - 1;
+    return mix(tints[below], tints[below + 1], place - below);
+}
+
+static colour sky(const float *ray) {
+    return mix(horizon, zenith, sqrt(fmax(0, (double)ray[5])));
+}
+
+static hp_vector point_of(const hp_result *hit) {
+    return (hp_vector){hit->CP[0], hit->CP[1], hit->CP[2]};
+}
+
+/* The unit normal of the triangle that was hit, on the ray's side. */
+static hp_vector normal_of(const hp_picture *picture, size_t pixel) {
+    const float *words = picture->scene->mesh.words + (size_t)picture->results[pixel].index * HP_TRIANGLE_WORDS;
+    const float *ray = picture->rays + pixel * HP_RAY_WORDS;
+    hp_vector v[3];
+    for (int i = 0; i < 3; i++) v[i] = (hp_vector){words[3 * i], words[3 * i + 1], words[3 * i + 2]};
+    hp_vector normal = hp_vector_unit(hp_vector_cross(hp_vector_sub(v[1], v[0]), hp_vector_sub(v[2], v[0])));
+    bool away = normal.x * (double)ray[3] + normal.y * (double)ray[4] + normal.z * (double)ray[5] > 0;
+    return away ? (hp_vector){-normal.x, -normal.y, -normal.z} : normal;
+}
+
+static double diagonal(const hp_bounds *bounds) {
+    hp_vector across = hp_vector_sub(hp_vector_of(bounds->high), hp_vector_of(bounds->low));
+    return sqrt(hp_vector_dot(across, across));
+}
+
+size_t hp_picture_shadow_rays(const hp_picture *picture, float *rays, uint32_t *pixels) {
+    double lift = 1e-4 * diagonal(&picture->scene->bounds);
+    size_t n = 0;
+    for (size_t i = 0; i < picture->width * picture->height; i++) {
+        if (!picture->results[i].F) continue;
+        hp_vector normal = normal_of(picture, i);
+        if (hp_vector_dot(normal, sun) <= 0) continue; /* turned away: dark without asking */
+        hp_vector from = hp_vector_along(point_of(&picture->results[i]), lift, normal);
+        const double words[HP_RAY_WORDS] = {from.x, from.y, from.z, sun.x, sun.y, sun.z};
+        for (int k = 0; k < HP_RAY_WORDS; k++) rays[n * HP_RAY_WORDS + (size_t)k] = (float)words[k];
+        pixels[n++] = (uint32_t)i;
+    }
+    return n;
+}
+
+static colour shade(const hp_picture *picture, size_t pixel) {
+    const hp_result *hit = &picture->results[pixel];
+    const float *ray = picture->rays + pixel * HP_RAY_WORDS;
+    if (!hit->F) return sky(ray);
+    hp_vector normal = normal_of(picture, pixel);
+    bool dark = picture->shadows && picture->shadows[pixel];
+    double sunny = dark ? 0 : fmax(0, hp_vector_dot(normal, sun)), open = 0.6 + 0.4 * normal.z;
+    colour light = hp_vector_along(times(sunlight, (colour){sunny, sunny, sunny}), open, skylight);
+    colour ground = times(tint(&picture->scene->bounds, (double)hit->CP[2]), light);
+    double scale = diagonal(&picture->scene->bounds);
+    double haze = scale > 0 ? 1 - exp(-0.16 * pow((double)hit->T / scale, 2)) : 0;
+    return mix(ground, horizon, haze);
+}
+
+/* IEC 61966-2-1 */
+static uint8_t srgb(double linear) {
+    double c = fmin(fmax(linear, 0), 1);
+    double coded = c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1 / 2.4) - 0.055;
+    return (uint8_t)(255 * coded + 0.5);
+}
+
+void hp_picture_shade(const hp_picture *picture, uint8_t *rgb) {
+    for (size_t i = 0; i < picture->width * picture->height; i++) {
+        colour c = shade(picture, i);
+        const double exposure = 1.7;
+        rgb[3 * i] = srgb(picture->results[i].F ? exposure * c.x : c.x);
+        rgb[3 * i + 1] = srgb(picture->results[i].F ? exposure * c.y : c.y);
+        rgb[3 * i + 2] = srgb(picture->results[i].F ? exposure * c.z : c.z);
+    }
+}
