@@ -1,0 +1,152 @@
+#include "internal.h"
+#include <hitpipe/pipe.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { INBOUND_MOST = 4096 }; /* transfers that may wait for the link to the board */
+
+static void read_costs(hp_board *board) {
+#define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, prepared)                                               \
+    {                                                                                                                \
+        hp_pipe_cost cost = hp_pipe_cost_of(HP_PAIR_##NAME, &board->config);                                         \
+        board->pipe_clocks[code] = cost.clocks > 0 ? cost.clocks : 1;                                                \
+        board->pipe_interval[code] = cost.interval > 0 ? cost.interval : 1;                                          \
+    }
+#include <hitpipe/pairs.def>
+#undef HP_PAIR
+#define HP_OBJECT(name, NAME, code, words, layout)                                                                   \
+    board->transformer_clocks[code] = hp_transformer_cost_of(HP_##NAME, &board->config).clocks;
+#include <hitpipe/objects.def>
+#undef HP_OBJECT
+}
+
+static unsigned processors(void) {
+    long n = sysconf(_SC_NPROCESSORS_ONLN);
+    return n > 0 ? (unsigned)n : 1;
+}
+
+static hp_status fill(hp_board *board, const hp_board_def *def) {
+    board->config = def->config;
+    board->def = *def;
+    board->engine = def->engine == HP_ENGINE_CLOCKED ? &hp_engine_clocked : &hp_engine_quick;
+    board->isa = hp_isa_choose(def->isa);
+    if (!board->isa || (def->vcd && def->engine != HP_ENGINE_CLOCKED)) return HP_ERROR_USAGE;
+    board->threads = def->threads ? def->threads : processors();
+    board->inbound_end = &board->inbound;
+    board->held_end = &board->held;
+    board->answers_end = &board->answers;
+    board->packet = malloc(hp_packet_bytes(HP_PAYLOAD_MAX));
+    if (!board->packet) return HP_ERROR_MEMORY;
+    read_costs(board);
+    return board->engine->create(board);
+}
+
+hp_status hp_board_create(const hp_board_def *def, hp_board **board) {
+    char message[HP_CONFIG_MESSAGE];
+    *board = NULL;
+    if (hp_config_check(&def->config, message) != HP_OK) return HP_ERROR_CONFIG;
+    hp_board *made = calloc(1, sizeof *made);
+    if (!made) return HP_ERROR_MEMORY;
+    hp_status status = fill(made, def);
+    if (status != HP_OK)
+        hp_board_destroy(made);
+    else
+        *board = made;
+    return status;
+}
+
+/* Frees a chain of structs whose first member is `next`. */
+static void free_chain(void *chain) {
+    while (chain) {
+        void *next = *(void **)chain;
+        free(chain);
+        chain = next;
+    }
+}
+
+void hp_board_destroy(hp_board *board) {
+    if (!board) return;
+    if (board->state) board->engine->destroy(board);
+    free_chain(board->inbound);
+    free_chain(board->held);
+    while (board->answers) {
+        hp_answer *next = board->answers->next;
+        hp_answer_free(board->answers);
+        board->answers = next;
+    }
+    hp_query_release(board->query);
+    hp_ddr_free(&board->ddr);
+    free(board->packet);
+    free(board);
+}
+
+hp_status hp_board_send(hp_board *board, const void *bytes, size_t n) {
+    if (board->inbound_count == INBOUND_MOST) return HP_ERROR_MEMORY;
+    hp_inbound *transfer = malloc(sizeof *transfer);
+    if (!transfer) return HP_ERROR_MEMORY;
+    *transfer = (hp_inbound){NULL, bytes, n};
+    *board->inbound_end = transfer;
+    board->inbound_end = &transfer->next;
+    board->inbound_count++;
+    return HP_OK;
+}
+
+/* Every packet needs one of the board's buffers, but HELLO, which has its own: a host that has lost count says HELLO.
+ */
+static bool has_buffer(const hp_board *board, const hp_inbound *transfer) {
+    hp_header header;
+    const uint8_t *payload;
+    if (board->held_count < board->config.packet_buffers) return true;
+    return transfer->n <= HP_HEADER_BYTES + HP_HELLO_FIXED + HP_CRC_BYTES &&
+           hp_packet_open(transfer->bytes, transfer->n, &header, &payload) == HP_OK &&
+           header.opcode == HP_OPCODE_HELLO;
+}
+
+void hp_board_received(hp_board *board) {
+    hp_inbound *transfer = board->inbound;
+    bool lost = !has_buffer(board, transfer), too_long = transfer->n > hp_packet_bytes(HP_PAYLOAD_MAX);
+    size_t n = (lost || too_long) && transfer->n > HP_HEADER_BYTES ? HP_HEADER_BYTES : transfer->n;
+    hp_held *held = malloc(sizeof *held + n);
+    if (held) {
+        *held = (hp_held){.lost = lost, .n = n};
+        if (n) memcpy(held->bytes, transfer->bytes, n);
+        *board->held_end = held;
+        board->held_end = &held->next;
+        board->held_count++;
+    }
+    board->inbound = transfer->next;
+    if (!board->inbound) board->inbound_end = &board->inbound;
+    board->inbound_count--;
+    free(transfer);
+    board->received = true;
+}
+
+void hp_board_answered(hp_board *board) {
+    hp_answer *answer = board->answers;
+    if (answer->count) board->engine->records(board, answer, board->packet + HP_HEADER_BYTES + HP_RESULT_FIXED);
+    hp_answer_encode(&board->config, answer, board->packet);
+    board->sent_bytes = hp_answer_bytes(answer);
+    board->sent = true;
+    board->answers = answer->next;
+    if (!board->answers) board->answers_end = &board->answers;
+    hp_answer_free(answer);
+}
+
+hp_board_event hp_board_step(hp_board *board) {
+    if (!board->sent && !board->received && !board->engine->run(board))
+        return (hp_board_event){.kind = HP_BOARD_IDLE, .clock = board->clock};
+    if (board->sent) {
+        board->sent = false;
+        return (hp_board_event){HP_BOARD_SENT, board->clock, board->packet, board->sent_bytes};
+    }
+    board->received = false;
+    return (hp_board_event){.kind = HP_BOARD_RECEIVED, .clock = board->clock};
+}
+
+hp_counters hp_board_counters(const hp_board *board) {
+    return board->counters;
+}
+const char *hp_board_isa(const hp_board *board) {
+    return board->isa;
+}

@@ -1,0 +1,69 @@
+/* The inside of a board: what both engines share. Everything here acts in no time; the engines say when. */
+#ifndef HITPIPE_INTERNAL_H
+#define HITPIPE_INTERNAL_H
+
+#include "answer.h"
+#include "rtl_model/clock/engine.h"
+#include "rtl_model/link/link.h"
+#include "rtl_model/memory/ddr.h"
+
+/* A transfer of the host that has not crossed the link. */
+typedef struct hp_inbound {
+    struct hp_inbound *next;
+    const uint8_t *bytes;
+    size_t n;
+} hp_inbound;
+
+/* A packet on the board, from its arrival to the end of its command. */
+typedef struct hp_held {
+    struct hp_held *next;
+    bool lost; /* there was no buffer: only its header is here */
+    size_t n;
+    _Alignas(16) uint8_t bytes[];
+} hp_held;
+
+struct hp_board {
+    hp_config config;
+    hp_board_def def;
+    const hp_engine *engine;
+    void *state; /* the engine's own */
+    const char *isa;
+    unsigned threads;
+    unsigned pipe_clocks[32], pipe_interval[32]; /* by pair */
+    unsigned transformer_clocks[HP_PLANE + 1];   /* by object */
+    hp_session session;
+    hp_ddr ddr;
+    hp_inbound *inbound, **inbound_end;
+    unsigned inbound_count;
+    hp_held *held, **held_end; /* the oldest is the one under decoding or carried out */
+    unsigned held_count;
+    hp_answer *answers, **answers_end; /* known to the link; the oldest may be on its way */
+    hp_command command;                /* the one carried out */
+    hp_query *query;                   /* of a QUERY carried out */
+    uint64_t clock;                    /* the present one */
+    hp_counters counters;              /* of the clocks before it */
+    uint8_t *packet;                   /* HP_BOARD_SENT: the bytes */
+    bool sent, received;               /* events of the present clock that the host has not seen */
+    size_t sent_bytes;
+};
+
+/* ---- what happens at the start of a clock ---- */
+
+/* The oldest transfer of the host has arrived; so has the oldest answer. */
+void hp_board_received(hp_board *board);
+void hp_board_answered(hp_board *board);
+
+/* ---- commands ---- */
+
+/* Begins the command of the oldest packet: decodes it, and does what it does to session and scene. */
+void hp_command_begin(hp_board *board);
+/* Ends it: the answer becomes known, counters are cleared, the packet's buffer is free. */
+void hp_command_end(hp_board *board);
+/* Objects in an UPLOAD's payload, and its first. */
+uint32_t hp_upload_count(const hp_command *command);
+uint32_t hp_upload_first(const hp_command *command);
+
+/* Makes a RESULT with records [first, first + count) of the present query known to the link. */
+void hp_result_known(hp_board *board, uint64_t first, uint32_t count, bool last);
+
+#endif
