@@ -16,12 +16,26 @@
 #include "rtl_model/number/arch/plain.h"
 #endif
 
-#define HP_UNROLL _Pragma("GCC unroll 32")
+/* A loop over the words of an object, which must vanish so that the words live in registers. */
+#ifdef __clang__
+#define foreach(w, n) _Pragma("unroll") for (unsigned w = 0; w < (n); w++)
+#else
+#define foreach(w, n) _Pragma("GCC unroll 32") for (unsigned w = 0; w < (n); w++)
+#endif
 #define HP_CHUNK (HP_VECTORS * HP_LANES)
+
+/* Words of each pipe's objects: ray_triangle_primary_words is 6. */
+enum {
+#define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, words)                                                  \
+    name##_primary_words = HP_##PRIMARY##_WORDS, name##_secondary_words = HP_##SECONDARY##_WORDS,                    \
+    name##_prepared_words = words,
+#include <hitpipe/pairs.def>
+#undef HP_PAIR
+};
 
 #define HP_MEANING gradual
 #define HP_WIDE_FLUSH 0
-#include "rtl_model/pipes/kernels.h"
+#include "rtl_model/pipes/wide_pipes.h"
 
 /* The kernel for one way of underflow: the same code where MXCSR flushes, else a second set. */
 #if HP_FLUSH_IN_HARDWARE
@@ -32,7 +46,7 @@
 #undef HP_WIDE_FLUSH
 #define HP_MEANING flush
 #define HP_WIDE_FLUSH 1
-#include "rtl_model/pipes/kernels.h"
+#include "rtl_model/pipes/wide_pipes.h"
 #endif
 
 #define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, words)                                                  \

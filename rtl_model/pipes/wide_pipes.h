@@ -1,0 +1,66 @@
+/* Every pipe in wide lanes under one way of underflow. No include guard; wide.c includes it once for each that the
+ * instruction set needs code for, with HP_MEANING and HP_WIDE_FLUSH set. */
+#include "rtl_model/number/wide.h"
+
+#include "rtl_model/transformer/transformer.pipe.h"
+
+/* The n words at `from` in every lane. */
+HP_INLINE void HP_NAMED(broadcast)(const float *from, unsigned n, num *out) {
+    foreach (w, n) out[w] = constant(from[w]);
+}
+
+/* n objects from array of structures into lanes and back; lanes past n repeat object 0. */
+HP_INLINE void HP_NAMED(gather)(const float *objects, size_t step, unsigned words, size_t n, num *out) {
+    float lane[HP_PREPARED_MAX][HP_CHUNK];
+    for (size_t i = 0; i < HP_CHUNK; i++) {
+        const float *object = objects + (i < n ? i : 0) * step;
+        foreach (w, words) lane[w][i] = object[w];
+    }
+    foreach (w, words) out[w] = HP_NAMED(load)(lane[w]);
+}
+
+HP_INLINE void HP_NAMED(scatter)(const num *in, unsigned words, size_t n, float *objects) {
+    float lane[HP_PREPARED_MAX][HP_CHUNK];
+    foreach (w, words) HP_NAMED(store)(lane[w], in[w]);
+    for (size_t i = 0; i < n; i++)
+        foreach (w, words) objects[i * words + w] = lane[w][i];
+}
+
+/* The matrix in every lane; false when the transformer is bypassed. */
+HP_INLINE bool HP_NAMED(load_matrix)(const float *matrix, num m[12]) {
+    if (!matrix) return false;
+    float lane[HP_CHUNK];
+    for (unsigned w = 0; w < 12; w++) {
+        for (unsigned i = 0; i < HP_CHUNK; i++) lane[i] = matrix[w];
+        m[w] = HP_NAMED(load)(lane);
+    }
+    return true;
+}
+
+HP_INLINE void HP_NAMED(write_pairs)(answer a, size_t n, size_t at, const hp_pairs_out *out) {
+    uint32_t F[HP_CHUNK] = {0};
+    float T[HP_CHUNK], CP[3][HP_CHUNK] = {{0}};
+    for (size_t i = 0; i < HP_CHUNK; i++) T[i] = INFINITY;
+    if (a.any) {
+        HP_NAMED(store_bits)(F, select_bits(a.F, constant_bits(1), constant_bits(0)));
+        HP_NAMED(store)(T, a.T);
+        HP_NAMED(store)(CP[0], a.CP.x);
+        HP_NAMED(store)(CP[1], a.CP.y);
+        HP_NAMED(store)(CP[2], a.CP.z);
+    }
+    memcpy(out->F + at, F, n * sizeof *F);
+    memcpy(out->T + at, T, n * sizeof *T);
+    for (unsigned axis = 0; axis < 3; axis++) memcpy(out->CP[axis] + at, CP[axis], n * sizeof(float));
+}
+
+/* The transformer of each pipe's secondaries. */
+#define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, words)                                                  \
+    HP_INLINE void HP_NAMED(name##_transform)(const num m[12], const num *in, num *out) {                            \
+        HP_NAMED(transform_##SECONDARY)(m, in, out);                                                                 \
+    }
+#include <hitpipe/pairs.def>
+#undef HP_PAIR
+
+#define HP_BEHIND_EACH_PIPE "rtl_model/pipes/kernels.h"
+#include "rtl_model/pipes/every.pipe.h"
+#undef HP_BEHIND_EACH_PIPE
