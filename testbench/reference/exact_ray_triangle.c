@@ -140,9 +140,9 @@ static void outline(mpq_t least, const pair *p, bool line) {
     mpq_clear(d);
 }
 
-/* The squared margin. A hit ends at an edge or at t = 0; a miss is as far as the nearest of the edges, or as the
+/* The margin, squared. A hit ends at an edge or at t = 0; a miss is as far as the nearest of the edges, or as the
  * origin is from the face below it. */
-static void margin(mpq_t least, const pair *p, bool hit) {
+static void square_margin(mpq_t least, const pair *p, bool hit) {
     mpq_t d, nn;
     mpq_inits(d, nn, NULL);
     point_to_span(least, &p->v[0], &p->O, &p->D, hit, false);
@@ -201,9 +201,6 @@ hpt_ray_triangle_scale hpt_scale_ray_triangle(const float ray[6], const float tr
     pair_read(&p, ray, triangle);
     mpq_init(square);
     hpt_ray_triangle_scale scale = {.L = extent(&p), .cosine = cosine(&p)};
-    bool hit = cross(&p).F;
-    margin(square, &p, hit);
-    scale.margin = hit ? root(square) : -root(square);
     hpt_q3_dot(square, &p.D, &p.D);
     scale.direction = root(square);
     for (int i = 0; i < 3; i++) scale.C = fmax(scale.C, fabs(ray[i]));
@@ -211,6 +208,19 @@ hpt_ray_triangle_scale hpt_scale_ray_triangle(const float ray[6], const float tr
     mpq_clear(square);
     pair_clear(&p);
     return scale;
+}
+
+double hpt_margin_ray_triangle(const float ray[6], const float triangle[9]) {
+    pair p;
+    mpq_t square;
+    pair_read(&p, ray, triangle);
+    mpq_init(square);
+    bool hit = cross(&p).F;
+    square_margin(square, &p, hit);
+    double margin = hit ? root(square) : -root(square);
+    mpq_clear(square);
+    pair_clear(&p);
+    return margin;
 }
 
 double hpt_band(const hpt_ray_triangle_scale *scale) {

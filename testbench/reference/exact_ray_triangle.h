@@ -28,13 +28,15 @@ hpt_crossing hpt_exact_ray_triangle(const float ray[6], const float triangle[9])
 typedef struct hpt_ray_triangle_scale {
     double L;         /* bounding radius of the triangle about its centroid + distance from there to the ray */
     double C;         /* largest absolute coordinate of origin and vertices */
-    double margin;    /* of a hit: the shortest shift of the ray that makes it miss, > 0 unless it only touches;
-                       * of a miss: minus the distance between ray and triangle, as point sets */
     double cosine;    /* |cos| of the angle between direction and normal; 0 when one of them is 0 */
     double direction; /* length of the direction */
 } hpt_ray_triangle_scale;
 
 hpt_ray_triangle_scale hpt_scale_ray_triangle(const float ray[6], const float triangle[9]);
+
+/* How far the pair is from touching. Of a hit: the shortest shift of the ray that makes it miss, 0 when it only
+ * touches. Of a miss: minus the distance between ray and triangle as point sets. */
+double hpt_margin_ray_triangle(const float ray[6], const float triangle[9]);
 
 /* The band in which either flag is right: |margin| <= max(1e-6 L, 2^-21 C). A length. */
 double hpt_band(const hpt_ray_triangle_scale *scale);

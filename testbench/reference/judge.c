@@ -10,7 +10,7 @@ hpt_verdict hpt_judge_ray_triangle(const float ray[6], const float triangle[9], 
     if (verdict.right && !verdict.measured) return verdict;
     hpt_ray_triangle_scale scale = hpt_scale_ray_triangle(ray, triangle);
     if (!verdict.right) {
-        verdict.margin = fabs(scale.margin) / hpt_band(&scale);
+        verdict.margin = fabs(hpt_margin_ray_triangle(ray, triangle)) / hpt_band(&scale);
         verdict.within = verdict.margin <= 1;
     }
     if (verdict.measured) {
