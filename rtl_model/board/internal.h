@@ -66,4 +66,16 @@ uint32_t hp_upload_first(const hp_command *command);
 /* Makes a RESULT with records [first, first + count) of the present query known to the link. */
 void hp_result_known(hp_board *board, uint64_t first, uint32_t count, bool last);
 
+/* ---- counting ---- */
+
+typedef struct hp_busy {
+    bool to_board, to_host, decoder, command;
+} hp_busy;
+
+/* Counts `clocks` clocks in which these were busy: what does not depend on the inside of a query. */
+void hp_board_count(hp_board *board, hp_busy busy, uint64_t clocks);
+
+/* A query ends that has made so many records known and written, and run so many tests: its last RESULT. */
+void hp_query_end(hp_board *board, uint64_t known, uint64_t written, uint64_t tests_run);
+
 #endif

@@ -113,23 +113,8 @@ static uint64_t write_beats(quick *q, uint64_t from, uint64_t to, hp_counters *c
 
 static void count_clocks(hp_board *board, uint64_t clocks) {
     const quick *q = board->state;
-    hp_counters *counters = &board->counters;
-    bool in = q->channel[HP_TO_BOARD].busy, out = q->channel[HP_TO_HOST].busy;
-    bool query = q->executing && board->command.opcode == HP_OPCODE_QUERY;
-    counters->clocks_total += clocks;
-    if (in) counters->clocks_link_to_board += clocks;
-    if (out) counters->clocks_link_to_host += clocks;
-    if (q->decoding) counters->clocks_decoder += clocks;
-    if (!q->executing) counters->stalls_idle += clocks;
-    if (q->executing && !query) counters->stalls_command += clocks;
-    if (query)
-        counters->phase_compute += clocks;
-    else if (out)
-        counters->phase_read_back += clocks;
-    else if (in || q->decoding || q->executing)
-        counters->phase_upload += clocks;
-    else
-        counters->phase_idle += clocks;
+    hp_busy busy = {q->channel[HP_TO_BOARD].busy, q->channel[HP_TO_HOST].busy, q->decoding, q->executing};
+    hp_board_count(board, busy, clocks);
 }
 
 static void pass_time(hp_board *board) {
@@ -156,19 +141,12 @@ static bool arrives(hp_board *board, hp_direction direction) {
     return true;
 }
 
-static void end_query(hp_board *board) {
-    hp_stream *stream = &((quick *)board->state)->stream;
-    uint64_t per_primary = board->query->mode == HP_MODE_ZIP ? 1 : board->query->count;
-    board->counters.tests_skipped += board->query->primaries * per_primary - stream->run;
-    hp_result_known(board, stream->known, (uint32_t)(stream->written - stream->known), true);
-}
-
 static void end_command(hp_board *board) {
     quick *q = board->state;
     if (!q->executing) return;
     if (board->command.opcode == HP_OPCODE_QUERY) {
         if (!hp_stream_ended(&q->stream)) return;
-        end_query(board);
+        hp_query_end(board, q->stream.known, q->stream.written, q->stream.run);
     } else if ((board->command.opcode == HP_OPCODE_UPLOAD && q->write_left) || q->command_ends != board->clock) {
         return;
     }
