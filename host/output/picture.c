@@ -6,7 +6,7 @@ typedef hp_vector colour; /* linear red, green, blue */
 
 /* The sun stands in the west-north-west, 30 degrees high: from the left of the default view. */
 static const hp_vector sun = {-0.80, 0.32, 0.51};
-static const colour sunlight = {1.28, 1.16, 0.96}, skylight = {0.20, 0.25, 0.33};
+static const colour sunlight = {2.3, 2.05, 1.65}, skylight = {0.30, 0.38, 0.52};
 static const colour horizon = {0.62, 0.74, 0.86}, zenith = {0.13, 0.28, 0.58};
 
 /* Tints from the lowest to the highest point. */
@@ -70,7 +70,13 @@ size_t hp_picture_shadow_rays(const hp_picture *picture, float *rays, uint32_t *
     return n;
 }
 
-static colour shade(const hp_picture *picture, size_t pixel) {
+/* The share of the horizon's colour at a distance: none at the nearest hit. */
+static double haze(const hp_picture *picture, double distance, double nearest) {
+    double scale = diagonal(&picture->scene->bounds), far = scale > 0 ? (distance - nearest) / scale : 0;
+    return 1 - exp(-0.55 * far * far);
+}
+
+static colour shade(const hp_picture *picture, size_t pixel, double nearest) {
     const hp_result *hit = &picture->results[pixel];
     const float *ray = picture->rays + pixel * HP_RAY_WORDS;
     if (!hit->F) return sky(ray);
@@ -79,9 +85,7 @@ static colour shade(const hp_picture *picture, size_t pixel) {
     double sunny = dark ? 0 : fmax(0, hp_vector_dot(normal, sun)), open = 0.6 + 0.4 * normal.z;
     colour light = hp_vector_along(times(sunlight, (colour){sunny, sunny, sunny}), open, skylight);
     colour ground = times(tint(&picture->scene->bounds, (double)hit->CP[2]), light);
-    double scale = diagonal(&picture->scene->bounds);
-    double haze = scale > 0 ? 1 - exp(-0.16 * pow((double)hit->T / scale, 2)) : 0;
-    return mix(ground, horizon, haze);
+    return mix(ground, horizon, haze(picture, (double)hit->T, nearest));
 }
 
 /* IEC 61966-2-1 */
@@ -92,11 +96,13 @@ static uint8_t srgb(double linear) {
 }
 
 void hp_picture_shade(const hp_picture *picture, uint8_t *rgb) {
-    for (size_t i = 0; i < picture->width * picture->height; i++) {
-        colour c = shade(picture, i);
-        const double exposure = 1.7;
-        rgb[3 * i] = srgb(picture->results[i].F ? exposure * c.x : c.x);
-        rgb[3 * i + 1] = srgb(picture->results[i].F ? exposure * c.y : c.y);
-        rgb[3 * i + 2] = srgb(picture->results[i].F ? exposure * c.z : c.z);
+    size_t n = picture->width * picture->height;
+    double nearest = INFINITY; /* a miss has T inf */
+    for (size_t i = 0; i < n; i++) nearest = fmin(nearest, (double)picture->results[i].T);
+    for (size_t i = 0; i < n; i++) {
+        colour c = shade(picture, i, nearest);
+        *rgb++ = srgb(c.x);
+        *rgb++ = srgb(c.y);
+        *rgb++ = srgb(c.z);
     }
 }
