@@ -58,8 +58,8 @@ static void print_object(FILE *file, const char *name, const uint32_t *words, un
     for (unsigned i = 0; i < n; i++) {
         describe(words[i], true, value, sizeof value);
         if (i % 3 == 0) fprintf(file, "  %-10s", i == 0 ? name : "");
-        fprintf(file, "%08" PRIx32 " %-17s", words[i], value);
-        if (i % 3 == 2 || i + 1 == n) fputc('\n', file);
+        bool last = i % 3 == 2 || i + 1 == n;
+        fprintf(file, "%08" PRIx32 " %-*s%s", words[i], last ? 0 : 17, value, last ? "\n" : "");
     }
 }
 
@@ -75,8 +75,9 @@ void hp_divergence_print(FILE *file, const char *path, const hp_vectors *vectors
     for (unsigned k = 0; k < HP_VECTOR_ANSWER_WORDS; k++) {
         describe(r.expected[k], k >= FIRST_FLOAT, wanted, sizeof wanted);
         describe(r.got[k], k >= FIRST_FLOAT, got, sizeof got);
-        fprintf(file, "  %-10s%08" PRIx32 " %-17s%08" PRIx32 " %-17s%s\n", answer_names[k], r.expected[k], wanted,
-                r.got[k], got, r.expected[k] == r.got[k] ? "" : "differs");
+        bool same = r.expected[k] == r.got[k];
+        fprintf(file, "  %-10s%08" PRIx32 " %-17s%08" PRIx32 " %-*s%s\n", answer_names[k], r.expected[k], wanted,
+                r.got[k], same ? 0 : 17, got, same ? "" : "differs");
     }
 }
 
