@@ -13,7 +13,7 @@ static void note(hp_queue *queue, const hp_header *header, unsigned place) {
     bool final = header->opcode == HP_OPCODE_ERROR || header->flags & HP_FLAG_LAST;
     unsigned heard = place + final;
     if (heard > queue->heard) queue->heard = heard;
-    if (hp_ahead(header->sequence, queue->expected) > 0 && hp_ahead(header->sequence, queue->next_sequence) <= 0)
+    if (hp_ahead(header->sequence, queue->expected) > 0 && hp_ahead(header->sequence, queue->highest) <= 0)
         queue->expected = header->sequence;
     if (hp_ahead(header->limit, queue->limit) > 0) queue->limit = header->limit;
     hp_queue_renew_deadline(queue);
@@ -24,7 +24,7 @@ static void note(hp_queue *queue, const hp_header *header, unsigned place) {
 static bool forgotten(const hp_queue *queue, const hp_header *header) {
     return header->opcode == HP_OPCODE_ERROR && header->status == HP_ERROR_SEQUENCE &&
            hp_queue_at((hp_queue *)queue, 0)->opcode != HP_OPCODE_HELLO &&
-           (hp_ahead(header->sequence, queue->base) < 0 || hp_ahead(header->sequence, queue->next_sequence) > 0);
+           (hp_ahead(header->sequence, queue->base) < 0 || hp_ahead(header->sequence, queue->highest) > 0);
 }
 
 /* Errors that come of the link, not of what was asked: sending again helps. */

@@ -91,12 +91,13 @@ void hp_queue_shape(hp_queue *queue, unsigned window, size_t payload_max) {
 
 static void send_command(hp_queue *queue, hp_command *command) {
     if (command->opcode == HP_OPCODE_HELLO) { /* a new session: its numbers begin at 0 */
-        queue->next_sequence = queue->base = queue->expected = 0;
+        queue->next_sequence = queue->highest = queue->base = queue->expected = 0;
         queue->limit = 1;
     }
     command->tag = queue->next_tag++;
     if (queue->next_tag == HP_NO_TAG) queue->next_tag = 0;
     command->sequence = queue->next_sequence++;
+    if (hp_ahead(queue->next_sequence, queue->highest) > 0) queue->highest = queue->next_sequence;
     command->position = 0;
     command->sendings++;
     if (queue->sent == queue->heard) hp_queue_renew_deadline(queue);

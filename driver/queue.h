@@ -69,6 +69,7 @@ struct hp_queue {
     unsigned window, head, count;       /* slots in use; the oldest one; how many are in the window */
     unsigned sent, heard;               /* of those: sent since the last going back; answered or known to be lost */
     uint32_t next_tag, next_sequence;
+    uint32_t highest;         /* no number of this session reached this one: the board cannot expect a later one */
     uint32_t base;            /* the board expected this number when the oldest was first sent */
     uint32_t expected, limit; /* what the board last said */
 
