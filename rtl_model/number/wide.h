@@ -18,9 +18,10 @@ typedef struct num {
     v_num a;
     HP_SECOND(v_num b;)
 } num;
+/* A word each for small flags: in one word, the two would be packed and unpacked on every use. */
 typedef struct flag {
     v_flag a;
-    HP_SECOND(v_flag b;)
+    HP_SECOND(_Alignas(_Alignof(v_flag) > 8 ? _Alignof(v_flag) : 8) v_flag b;)
 } flag;
 typedef struct bits {
     v_bits a;
