@@ -386,6 +386,7 @@ static void plan_output(hp_stream *st, uint64_t t, stream_run *run) {
     if (!st->records_tests) {
         if (st->over) shorten(run, st->exit - st->moves + 1);
         if (st->stops_count) shorten(run, st->stops[st->stops_head].clock - t + 1);
+        if (st->next_hit < st->hits) shorten(run, st->latency); /* before a test of this run can stop anything */
         return;
     }
     const hp_test_run *next = oldest_tests(st);
