@@ -120,9 +120,14 @@ hp_status hp_heightfield_resample(hp_heightfield *field, size_t rows, size_t col
     return HP_OK;
 }
 
+/* A product without the -0 that a negative spacing gives the first row. */
+static float length(size_t i, double spacing) {
+    return i == 0 ? 0 : (float)((double)i * spacing);
+}
+
 static void place(const hp_heightfield *field, size_t i, size_t j, float xyz[3]) {
-    xyz[0] = (float)((double)j * field->spacing[0]);
-    xyz[1] = (float)((double)i * field->spacing[1]);
+    xyz[0] = length(j, field->spacing[0]);
+    xyz[1] = length(i, field->spacing[1]);
     xyz[2] = field->heights[i * field->columns + j];
 }
 
