@@ -140,15 +140,16 @@ static void outline(mpq_t least, const pair *p, bool line) {
     mpq_clear(d);
 }
 
-/* The margin, squared. A hit ends at an edge or at t = 0; a miss is as far as the nearest of the edges, or as the
- * origin is from the face below it. */
+/* The margin, squared. A hit ends at an edge, or at t = 0; a miss is as far as the nearest of the edges, or as the
+ * origin is from the face below it. Where the origin is not over the face, an edge is nearer than the plane in both
+ * cases. */
 static void square_margin(mpq_t least, const pair *p, bool hit) {
     mpq_t d, nn;
     mpq_inits(d, nn, NULL);
     point_to_span(least, &p->v[0], &p->O, &p->D, hit, false);
     outline(least, p, hit);
     hpt_q3_dot(nn, &p->N, &p->N);
-    if (mpq_sgn(nn) != 0 && (hit || over_face(p, &p->O))) {
+    if (mpq_sgn(nn) != 0 && over_face(p, &p->O)) {
         mpq_mul(d, p->height, p->height);
         mpq_div(d, d, nn);
         keep_least(least, d);

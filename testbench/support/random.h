@@ -58,4 +58,11 @@ static inline double hpt_random_between(hpt_random *random, double least, double
     return least + (most - least) * hpt_random_unit(random);
 }
 
+/* x rounded to binary32, for good: where gcc 12 vectorises at -O3 (SLP) it may otherwise go on with the unrounded x
+ * when the float becomes a double again. */
+static inline float hpt_to_float(double x) {
+    volatile float rounded = (float)x;
+    return rounded;
+}
+
 #endif

@@ -8,7 +8,7 @@
  * ---------------------------------------------------------------------------------------------------------- */
 
 static void draw(hpt_random *random, double size, float *words, unsigned n) {
-    for (unsigned i = 0; i < n; i++) words[i] = (float)hpt_random_between(random, -size, size);
+    for (unsigned i = 0; i < n; i++) words[i] = hpt_to_float(hpt_random_between(random, -size, size));
 }
 
 /* 2^-k with k drawn from [least, most). */
@@ -32,11 +32,11 @@ static void draw_inside(hpt_random *random, double *u, double *v) {
 
 /* Turns the ray from its origin to a point, which it reaches at T = 1 / stretch. */
 static void aim(float ray[6], const double point[3], double stretch) {
-    for (int i = 0; i < 3; i++) ray[3 + i] = (float)((point[i] - ray[i]) * stretch);
+    for (int i = 0; i < 3; i++) ray[3 + i] = hpt_to_float((point[i] - ray[i]) * stretch);
 }
 
 static void move(float *points, unsigned n, const double by[3]) {
-    for (unsigned i = 0; i < 3 * n; i++) points[i] = (float)(points[i] + by[i % 3]);
+    for (unsigned i = 0; i < 3 * n; i++) points[i] = hpt_to_float(points[i] + by[i % 3]);
 }
 
 static void normal_of(const float triangle[9], double normal[3]) {
@@ -81,7 +81,7 @@ static void start_near_surface(hpt_random *random, float ray[6], const float tri
     point_at(triangle, u, v, point);
     normal_of(triangle, normal);
     double height = draw_power(random, 8, 27);
-    for (int i = 0; i < 3; i++) ray[i] = (float)(point[i] + height * normal[i]);
+    for (int i = 0; i < 3; i++) ray[i] = hpt_to_float(point[i] + height * normal[i]);
     draw(random, 1, ray + 3, 3);
 }
 
@@ -110,7 +110,7 @@ void hpt_slanting_pair(hpt_random *random, unsigned i, float ray[6], float trian
     v = hpt_random_between(random, -2, 3);
     point_at(triangle, u, v, from);
     normal_of(triangle, normal);
-    for (int k = 0; k < 3; k++) ray[k] = (float)(from[k] + rise * normal[k]);
+    for (int k = 0; k < 3; k++) ray[k] = hpt_to_float(from[k] + rise * normal[k]);
     aim(ray, to, i % 2 ? 1 : hpt_random_between(random, 0.25, 4));
 }
 
@@ -123,7 +123,7 @@ void hpt_sliver_pair(hpt_random *random, unsigned i, float ray[6], float triangl
         double third = line[k] + s * ((double)line[3 + k] - line[k]) + width * aside[k];
         triangle[3 * (i % 3) + k] = line[k];
         triangle[3 * ((i + 1) % 3) + k] = line[3 + k];
-        triangle[3 * ((i + 2) % 3) + k] = (float)third;
+        triangle[3 * ((i + 2) % 3) + k] = hpt_to_float(third);
     }
     draw(random, 2, ray, 3);
     aim_near(random, i / 2, ray, triangle);
@@ -154,7 +154,7 @@ void hpt_far_offset_pair(hpt_random *random, unsigned i, float ray[6], float tri
 
 static void draw_whole(hpt_random *random, int most, int factor, float *words, unsigned n) {
     for (unsigned i = 0; i < n; i++)
-        words[i] = (float)(factor * ((int)hpt_random_below(random, 2 * (unsigned)most + 1) - most));
+        words[i] = hpt_to_float(factor * ((int)hpt_random_below(random, 2 * (unsigned)most + 1) - most));
 }
 
 /* A triangle of area and a direction that crosses its plane; vertices are multiples of 8. */
@@ -188,7 +188,7 @@ static void meet(hpt_random *random, place where, unsigned i, double t, float ra
     double point[3];
     draw_crossing(random, ray, triangle);
     draw_place(random, where, i, triangle, point);
-    for (int k = 0; k < 3; k++) ray[k] = (float)(point[k] - t * ray[3 + k]);
+    for (int k = 0; k < 3; k++) ray[k] = hpt_to_float(point[k] - t * ray[3 + k]);
 }
 
 static double draw_t(hpt_random *random) {
@@ -234,8 +234,8 @@ void hpt_parallel_pair(hpt_random *random, unsigned i, float ray[6], float trian
     int along = (int)hpt_random_below(random, 5) - 2, across = 1 + (int)hpt_random_below(random, 2);
     draw_place(random, (place)(i % 3), i, triangle, point);
     for (int k = 0; k < 3; k++) {
-        ray[3 + k] = (float)(along * (triangle[3 + k] - triangle[k]) + across * (triangle[6 + k] - triangle[k]));
-        ray[k] = (float)(point[k] - ray[3 + k]);
+        ray[3 + k] = hpt_to_float(along * (triangle[3 + k] - triangle[k]) + across * (triangle[6 + k] - triangle[k]));
+        ray[k] = hpt_to_float(point[k] - ray[3 + k]);
     }
     if (i % 2) ray[hpt_random_below(random, 3)] += 8;
 }
@@ -253,7 +253,7 @@ void hpt_flat_pair(hpt_random *random, unsigned i, float ray[6], float triangle[
     }
     point_at(triangle, 0.25, 0.25, point);
     draw_whole(random, 9, 1, ray + 3, 3);
-    for (int k = 0; k < 3; k++) ray[k] = (float)(point[k] - 4 * ray[3 + k]);
+    for (int k = 0; k < 3; k++) ray[k] = hpt_to_float(point[k] - 4 * ray[3 + k]);
 }
 
 void hpt_still_pair(hpt_random *random, unsigned i, float ray[6], float triangle[9]) {
@@ -261,7 +261,7 @@ void hpt_still_pair(hpt_random *random, unsigned i, float ray[6], float triangle
     draw_crossing(random, ray, triangle);
     draw_place(random, (place)(i % 3), i, triangle, point);
     for (int k = 0; k < 3; k++) {
-        ray[k] = (float)(point[k] + (i % 2 ? ray[3 + k] : 0));
+        ray[k] = hpt_to_float(point[k] + (i % 2 ? ray[3 + k] : 0));
         ray[3 + k] = i / 2 % 2 ? -0.0F : 0.0F;
     }
 }

@@ -38,6 +38,7 @@ hpt_ray_triangle_maker hpt_subnormal_word_pair; /* one of the 15 words subnormal
 hpt_ray_triangle_maker hpt_tiny_pair;           /* all words subnormal or 0, but for a direction of 2^80 to 2^125 */
 hpt_ray_triangle_maker hpt_underflow_pair;      /* 2^-75 to 2^-30: products go below 2^-126 */
 hpt_ray_triangle_maker hpt_overflow_pair;       /* 2^30 to 2^127: products go past the largest number */
+hpt_ray_triangle_maker hpt_long_direction_pair; /* det past the largest number, t not */
 hpt_ray_triangle_maker hpt_far_hit_pair;        /* T near the largest number and past it */
 
 #endif

@@ -23,15 +23,15 @@ static void aim_inside(hpt_random *random, float ray[6], const float triangle[9]
     double u = hpt_random_between(random, 0.125, 0.375), v = hpt_random_between(random, 0.125, 0.375);
     for (int i = 0; i < 3; i++) {
         double point = (1 - u - v) * triangle[i] + u * triangle[3 + i] + v * triangle[6 + i];
-        ray[3 + i] = (float)(point - ray[i]);
+        ray[3 + i] = hpt_to_float(point - ray[i]);
     }
 }
 
 /* A ray that hits, words about 2^least to 2^most. */
 static void draw_hit(hpt_random *random, int least, int most, float ray[6], float triangle[9]) {
     double size = ldexp(1, least + (int)hpt_random_below(random, (uint64_t)(most - least + 1)));
-    for (int i = 0; i < 9; i++) triangle[i] = (float)(size * hpt_random_between(random, -1, 1));
-    for (int i = 0; i < 3; i++) ray[i] = (float)(size * hpt_random_between(random, -1, 1));
+    for (int i = 0; i < 9; i++) triangle[i] = hpt_to_float(size * hpt_random_between(random, -1, 1));
+    for (int i = 0; i < 3; i++) ray[i] = hpt_to_float(size * hpt_random_between(random, -1, 1));
     aim_inside(random, ray, triangle);
 }
 
@@ -64,13 +64,13 @@ void hpt_tiny_pair(hpt_random *random, unsigned i, float ray[6], float triangle[
     double stretch = ldexp(1, 230 + (int)(i % 20));
     for (unsigned k = 0; k < 3; k++)
         ray[3 + k] =
-            (float)(stretch * ((double)triangle[k] + triangle[3 + k] + triangle[6 + k] - 3 * (double)ray[k]));
+            hpt_to_float(stretch * ((double)triangle[k] + triangle[3 + k] + triangle[6 + k] - 3 * (double)ray[k]));
 }
 
 void hpt_underflow_pair(hpt_random *random, unsigned i, float ray[6], float triangle[9]) {
     draw_hit(random, -75, -30, ray, triangle);
     double stretch = ldexp(1, (int)(i % 60));
-    for (int k = 3; k < 6; k++) ray[k] = (float)(stretch * ray[k]);
+    for (int k = 3; k < 6; k++) ray[k] = hpt_to_float(stretch * ray[k]);
 }
 
 void hpt_overflow_pair(hpt_random *random, unsigned i, float ray[6], float triangle[9]) {
@@ -78,8 +78,14 @@ void hpt_overflow_pair(hpt_random *random, unsigned i, float ray[6], float trian
     draw_hit(random, 30, 126, ray, triangle);
 }
 
+void hpt_long_direction_pair(hpt_random *random, unsigned i, float ray[6], float triangle[9]) {
+    draw_hit(random, 0, 20, ray, triangle);
+    double stretch = ldexp(1, 76 + (int)(i % 30));
+    for (int k = 3; k < 6; k++) ray[k] = hpt_to_float(stretch * ray[k]);
+}
+
 void hpt_far_hit_pair(hpt_random *random, unsigned i, float ray[6], float triangle[9]) {
     draw_hit(random, 30, 40, ray, triangle);
     double shrink = ldexp(1, -(100 + (int)(i % 32)));
-    for (int k = 3; k < 6; k++) ray[k] = (float)(shrink * ray[k]);
+    for (int k = 3; k < 6; k++) ray[k] = hpt_to_float(shrink * ray[k]);
 }

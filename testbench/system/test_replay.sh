@@ -8,6 +8,10 @@ vectors=vectors/ray-triangle
 rm -rf "$work"
 mkdir -p "$work"
 
+# records FILE...: how many there are
+records() { cat "$@" | grep -c '^[0-9a-f]'; }
+all=$(records $vectors/*.hex)
+
 # flip FILE RECORD WORD BIT: the file with one bit changed; records and words from 0
 flip() {
     awk -v record="$2" -v word="$3" -v bit="$4" '
@@ -31,7 +35,7 @@ for isa in plain sse2 avx2 avx512 neon; do
     isas=$((isas + 1))
     for engine in quick clocked; do
         check "all vectors, $isa, $engine" env HP_ISA=$isa "$HITPIPE" replay --engine $engine $vectors/*.hex
-        says "says how many" '^11 files, [0-9,]+ records, 0 differ$'
+        check "of all records" [ "$(echo "$output" | tail -n 1 | tr -d ,)" = "11 files $all records 0 differ" ]
     done
 done
 check "at least plain C was there" [ $isas -ge 1 ]
@@ -58,9 +62,10 @@ for word in 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14; do
     flip $vectors/random.hex 0 $word 31
     status 1 "the sign of word $word of record 0" "$HITPIPE" replay "$work/flipped.hex"
 done
-flip $vectors/nan-and-infinity.hex 659 15 0
+last=$(($(records $vectors/nan-and-infinity.hex) - 1))
+flip $vectors/nan-and-infinity.hex $last 15 0
 status 1 "the last record of a file" "$HITPIPE" replay "$work/flipped.hex"
-says "is numbered" 'record 659 differs'
+says "is numbered" "record $last differs"
 sed 's/numerics: flush/numerics: gradual/' $vectors/subnormals-flush.hex >"$work/gradual.hex"
 status 1 "the other numerics give other bits" "$HITPIPE" replay "$work/gradual.hex"
 flip $vectors/random.hex 3 17 0
@@ -74,7 +79,7 @@ says "the count" '"differ": 1'
 says "the record" '"record": 7'
 says "the word" '"T"'
 check "--report" "$HITPIPE" replay --report "$work/report.json" $vectors/*.hex
-check "counts every test of every file" grep -q '"run": 5199' "$work/report.json"
+check "counts every test of every file" grep -q "\"run\": $all,\?$" "$work/report.json"
 
 # ---- broken files ----
 head -c 20000 $vectors/random.hex >"$work/short.hex"

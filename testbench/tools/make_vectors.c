@@ -81,7 +81,7 @@ static const set sets[] = {
     {"nan-and-infinity",
      HP_NUMERICS_ANY,
      {{"one word", "quiet and signalling NaN and infinity of both signs in each word: never a hit",
-       hpt_nonfinite_pair, 240, MISSES},
+       hpt_nonfinite_pair, 480, MISSES},
       {"two words", "an infinity and a second odd word: none may cancel the other into a hit", hpt_two_nonfinite_pair,
        420, MISSES}}},
     {"signed-zeros",
@@ -97,6 +97,8 @@ static const set sets[] = {
      HP_NUMERICS_ANY,
      {{"large words", "products and sums past the largest number: a miss, never a NaN or a false hit",
        hpt_overflow_pair, 200, MEASURED},
+      {"long directions", "det overflows and t does not: t / inf = 0 must not look like a hit at the origin",
+       hpt_long_direction_pair, 180, MEASURED},
       {"far hits", "short directions: T near the largest number is a hit, past it a miss", hpt_far_hit_pair, 200,
        MEASURED}}},
 };
