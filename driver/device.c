@@ -1,50 +1,12 @@
 /* Opening and closing a device, and what every call has in common. */
 #include "device.h"
-#include <hitpipe/pipe.h>
+#include "transport/targets.h"
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 enum { PROGRESS_MS = 50 };
 
 /* ---- open ---- */
-
-static hp_status open_model(const hp_device_def *def, hp_transport **transport, hp_message *message) {
-    char why[HP_CONFIG_MESSAGE];
-    if (hp_config_check(&def->board, why)) return hp_say(message, HP_ERROR_CONFIG, "%s", why);
-    if (!hp_isa_choose(def->isa))
-        return hp_say(message, HP_ERROR_USAGE, "instruction set %s is not to be had here",
-                      def->isa ? def->isa : "in HP_ISA");
-    if (def->vcd && !def->clocked) return hp_say(message, HP_ERROR_USAGE, "only the clocked engine writes waveforms");
-    const hp_board_def board = {
-        .config = def->board,
-        .engine = def->clocked ? HP_ENGINE_CLOCKED : HP_ENGINE_QUICK,
-        .isa = def->isa,
-        .threads = def->threads,
-        .vcd = def->vcd,
-        .vcd_context = def->vcd_context,
-    };
-    hp_status status = hp_transport_model(&board, transport);
-    return status ? hp_say(message, status, "cannot make the board: %s", hp_status_text(status)) : HP_OK;
-}
-
-static hp_status open_target(const hp_device_def *def, hp_transport **transport, hp_message *message) {
-    if (def->cookie != HP_DEVICE_COOKIE)
-        return hp_say(message, HP_ERROR_USAGE, "the device def does not come from hp_default_device_def");
-    if (!def->target || strcmp(def->target, "model") == 0) return open_model(def, transport, message);
-    if (strcmp(def->target, "null") == 0) {
-        hp_status status = hp_transport_null(transport);
-        return status ? hp_say(message, status, "%s", hp_status_text(status)) : HP_OK;
-    }
-    return hp_say(message, HP_ERROR_NO_DEVICE, "no target \"%.60s\": there are model and null", def->target);
-}
-
-static void identify_target(hp_device *device, bool clocked) {
-    hp_board *board = hp_transport_model_board(device->transport);
-    device->identity.target = device->transport->ops->name;
-    device->identity.engine = !board ? "hardware" : clocked ? "clocked" : "quick";
-    device->identity.isa = board ? hp_board_isa(board) : "";
-}
 
 hp_status hp_open_transport(const hp_device_def *def, hp_transport *transport, hp_device **out, hp_message *message) {
     *out = NULL;
@@ -58,7 +20,7 @@ hp_status hp_open_transport(const hp_device_def *def, hp_transport *transport, h
     device->in_flight = def->in_flight;
     device->progress = def->progress;
     device->progress_context = def->progress_context;
-    identify_target(device, def->clocked);
+    hp_target_identify(transport, def, &device->identity);
     hp_status status = hp_queue_open(&device->queue, transport, &device->message, def->timeout_ms, def->retries);
     if (!status) status = hp_begin(device);
     *message = device->message;
@@ -77,7 +39,9 @@ hp_status hp_open(const hp_device_def *def, hp_device **device) {
     if (!device) return hp_say(&open_message, HP_ERROR_USAGE, "no place for the device");
     *device = NULL;
     if (!def) return hp_say(&open_message, HP_ERROR_USAGE, "no device def");
-    hp_status status = open_target(def, &transport, &open_message);
+    if (def->cookie != HP_DEVICE_COOKIE)
+        return hp_say(&open_message, HP_ERROR_USAGE, "the device def does not come from hp_default_device_def");
+    hp_status status = hp_target_open(def, &transport, &open_message);
     return status ? status : hp_open_transport(def, transport, device, &open_message);
 }
 

@@ -1,14 +1,15 @@
-/* A transport moves whole packets between the driver and a board. Each kind (null, model, later usb) fills one vtable;
- * several may be open at a time. The shape is libusb's asynchronous interface: submit a transfer, poll for completions,
- * cancel; so a USB transport needs no adapter, and an in-process one no thread.
+/* A transport moves whole packets between the driver and a board. Each kind (null, model, later usb) fills one
+ * vtable; several may be open at a time. The shape is libusb's asynchronous interface: submit a transfer, poll for
+ * completions, cancel; so a USB transport needs no adapter, and an in-process one no thread.
  *
  * Rules every transport keeps:
- *  - A submitted transfer belongs to the transport until its `done` runs. `done` runs exactly once for each transfer that
- *    submit accepted, only from inside poll (or close), on the thread that called it, and may submit again.
+ *  - A submitted transfer belongs to the transport until its `done` runs. `done` runs exactly once for each transfer
+ * that submit accepted, only from inside poll (or close), on the thread that called it, and may submit again.
  *  - OUT transfers (to the board) complete in the order of submission, and so do IN transfers (to the host).
- *  - One transfer carries one packet. An IN transfer completes with the bytes that came; a packet longer than its buffer
- *    completes it with HP_ERROR_LENGTH.
- *  - cancel makes the transfer complete, from a later poll, with HP_ERROR_CANCELLED, or with its result if that came first.
+ *  - One transfer carries one packet. An IN transfer completes with the bytes that came; a packet longer than its
+ * buffer completes it with HP_ERROR_LENGTH.
+ *  - cancel makes the transfer complete, from a later poll, with HP_ERROR_CANCELLED, or with its result if that came
+ * first.
  *  - After HP_ERROR_DISCONNECTED nothing but cancel, poll and close is of use.
  * A transport is used by one thread at a time; different transports are independent. */
 #ifndef HITPIPE_TRANSPORT_H
@@ -18,14 +19,14 @@
 
 typedef struct hp_transfer hp_transfer;
 struct hp_transfer {
-    uint8_t *bytes; /* OUT: what to send; IN: where to put what comes */
-    size_t room;    /* bytes to send, or room for them */
-    size_t moved;   /* set before `done`: bytes sent or received */
+    uint8_t *bytes;   /* OUT: what to send; IN: where to put what comes */
+    size_t room;      /* bytes to send, or room for them */
+    size_t moved;     /* set before `done`: bytes sent or received */
     hp_status status; /* set before `done` */
     void (*done)(hp_transfer *transfer);
-    void *owner;    /* the submitter's own */
-    bool in;        /* set by submit */
-    void *private;  /* the transport's own while it holds the transfer */
+    void *owner;       /* the submitter's own */
+    bool in;           /* set by submit */
+    void *private;     /* the transport's own while it holds the transfer */
     hp_transfer *next; /* the transport's own */
 };
 
@@ -37,8 +38,8 @@ typedef struct hp_transport_ops {
     hp_status (*submit_out)(hp_transport *transport, hp_transfer *transfer);
     hp_status (*submit_in)(hp_transport *transport, hp_transfer *transfer);
     hp_status (*cancel)(hp_transport *transport, hp_transfer *transfer);
-    /* Runs what can complete; waits up to timeout_ms (0: not at all) for the first completion. HP_OK with *completed the
-     * number of `done` calls made, HP_ERROR_TIMEOUT when there was none, HP_ERROR_DISCONNECTED, HP_ERROR_IO. An
+    /* Runs what can complete; waits up to timeout_ms (0: not at all) for the first completion. HP_OK with *completed
+     * the number of `done` calls made, HP_ERROR_TIMEOUT when there was none, HP_ERROR_DISCONNECTED, HP_ERROR_IO. An
      * in-process board that has nothing under way reports HP_ERROR_TIMEOUT at once: waiting would bring nothing. */
     hp_status (*poll)(hp_transport *transport, unsigned timeout_ms, unsigned *completed);
     /* Largest packet the link takes in one transfer. */

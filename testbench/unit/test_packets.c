@@ -1,6 +1,7 @@
 /* Packets: bytes, CRC-32C, damage; and that docs/protocol.md says what packets.def and the other tables say. */
 #include "rtl_model/link/crc32c.h"
 #include "testbench/support/page.h"
+#include <hitpipe/board.h>
 #include <hitpipe/packet.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -233,6 +234,44 @@ static void the_page_has_objects_pairs_modes_and_errors(void **state) {
     page_end(&rows);
 }
 
+/* ---- the example of the page, against the simulated board ---- */
+
+/* What the board answers next; *n is 0 when it waits for the host. */
+static const uint8_t *next_answer(hp_board *board, size_t *n) {
+    hp_board_event event;
+    do event = hp_board_step(board);
+    while (event.kind == HP_BOARD_RECEIVED);
+    *n = event.kind == HP_BOARD_SENT ? event.n : 0;
+    return event.bytes;
+}
+
+static void the_board_answers_as_the_page_says(void **state) {
+    hp_board_def def = {.isa = "plain", .threads = 1};
+    hp_board *board;
+    uint8_t bytes[256], said[256];
+    const char *direction;
+    const uint8_t *answer = NULL;
+    size_t n, answered = 0;
+    unsigned blocks = 0, answers = 0;
+    hp_config_preset(&def.config, "usb3"); /* two packet buffers, as the page says */
+    assert_int_equal(hp_board_create(&def, &board), HP_OK);
+    for (; (n = page_bytes(*state, blocks, bytes, sizeof bytes, &direction)) > 0; blocks++) {
+        if (strcmp(direction, "to-board") == 0) {
+            assert_int_equal(hp_board_send(board, bytes, n), HP_OK);
+            answer = next_answer(board, &answered);
+            assert_true(answered >= HP_HEADER_BYTES && answered <= sizeof said);
+            memcpy(said, answer, answered);
+        } else {
+            assert_int_equal(answered, n);
+            assert_memory_equal(said, bytes, n);
+            answers++;
+        }
+    }
+    assert_int_equal(blocks, 7);
+    assert_int_equal(answers, 3);
+    hp_board_destroy(board);
+}
+
 static int open_page(void **state) {
     *state = page_open("docs/protocol.md");
     return *state ? 0 : -1;
@@ -258,6 +297,7 @@ int main(void) {
         cmocka_unit_test(the_page_has_the_header),
         cmocka_unit_test(the_page_has_every_packet),
         cmocka_unit_test(the_page_has_objects_pairs_modes_and_errors),
+        cmocka_unit_test(the_board_answers_as_the_page_says),
     };
     return cmocka_run_group_tests(tests, open_page, close_page);
 }
