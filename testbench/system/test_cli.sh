@@ -1,0 +1,145 @@
+#!/bin/sh
+# The command line: verbs, options, exit statuses, and every bad input with the words that a person needs.
+. testbench/support/check.sh
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+h=$HITPIPE
+
+# ---- verbs and options ----
+status 2 "no verb" "$h"
+says "no verb" 'Usage: hitpipe VERB'
+status 0 "help" "$h" --help
+says "help" '^  trace '
+status 0 "version" "$h" --version
+says "version" '^hitpipe [0-9]+\.[0-9]+\.[0-9]+$'
+status 2 "unknown verb" "$h" trase
+says "unknown verb" "no verb 'trase'; did you mean 'trace'"
+status 2 "unknown option" "$h" --verbose
+says "unknown option" "no option '--verbose'"
+for verb in info trace query replay; do
+    status 0 "$verb --help" "$h" $verb --help
+    says "$verb --help" "Usage: hitpipe $verb"
+    status 2 "$verb --nonsense" "$h" $verb --nonsense
+    says "$verb --nonsense" "hitpipe $verb: unrecognized option '--nonsense'"
+    says "$verb --nonsense gives a hint" "Try .hitpipe $verb --help"
+    status 2 "$verb --engine steam" "$h" $verb --engine steam
+    says "$verb --engine steam" "quick or clocked, not 'steam'"
+    status 3 "$verb --board nowhere" "$h" $verb --board nowhere
+    says "$verb --board nowhere" 'there are usb3, wscg2007, ideal'
+done
+status 2 "--vcd with the quick engine" "$h" info --vcd "$work/x.vcd"
+status 2 "threads" "$h" info --threads many
+status 2 "an ISA that is none" "$h" info --isa mmx
+status 4 "a target that is none" "$h" info --target moon
+status 2 "trace without scene" "$h" trace
+status 2 "trace with two scenes" "$h" trace a.obj b.obj
+status 2 "query without pair" "$h" query -p a -s b
+status 2 "query of no pair" "$h" query ray-moon -p a -s b
+says "query of no pair" "no pair 'ray-moon'"
+status 2 "query without files" "$h" query ray-triangle
+status 2 "query of no mode" "$h" query ray-triangle -p a -s b -m some
+status 2 "a matrix too short" "$h" query ray-triangle -p a -s b -t 1,2,3
+
+# ---- info ----
+status 0 "info" "$h" info
+says "info" '^pipes +ray-triangle'
+status 0 "info --json" "$h" info --json
+says "info --json" '"target": "model"'
+status 0 "info --pipes" "$h" info --pipes
+says "the paper's operators" '^ray-triangle +27 +1 +0 +12 +15 '
+status 0 "info --pipes --json" "$h" info --pipes --json
+for key in pair multipliers dividers square_roots adders subtractors comparators ands levels clocks interval; do
+    says "pipe key" "\"$key\":"
+done
+status 0 "info --config" "$h" info --config --board wscg2007
+says "a knob" '^ddr\.row_beats +512 '
+status 0 "info --config --json" "$h" info --config --json
+says "a knob" '"key": "lanes"'
+status 4 "info to a full disk" sh -c "'$h' info --config >/dev/full"
+
+# ---- query ----
+cat >"$work/rays.csv" <<END
+ox,oy,oz,dx,dy,dz
+0.25,0.25,5,0,0,-2   # hits the upper, then the lower
+0.75,0.75,5,0,0,-1   # misses both
+0,0,0.5,0,0,-1       # a corner of the lower
+END
+cat >"$work/triangles.csv" <<END
+0,0,0, 1,0,0, 0,1,0
+0,0,1, 1,0,1, 0,1,1
+0,0,0, 1,1,1, 2,2,2  # no area
+END
+q() { "$h" query ray-triangle --primary "$work/rays.csv" --secondary "$work/triangles.csv" "$@"; }
+same() { # NAME EXPECTED: $output is exactly that
+    if [ "$output" = "$2" ]; then good; else bad "$1: $output"; fi
+}
+status 0 "closest" q
+same "closest" "primary,secondary,F,T,cpx,cpy,cpz
+0,1,1,2,0.25,0.25,1
+1,4294967295,0,inf,0,0,0
+2,0,1,0.5,0,0,0"
+status 0 "any" q --mode any
+same "any: the lowest index" "primary,secondary,F,T,cpx,cpy,cpz
+0,0,1,2.5,0.25,0.25,0
+1,4294967295,0,inf,0,0,0
+2,0,1,0.5,0,0,0"
+status 0 "zip" q --mode zip
+same "zip" "primary,secondary,F,T,cpx,cpy,cpz
+0,0,1,2.5,0.25,0.25,0
+1,1,0,inf,0,0,0
+2,2,0,inf,0,0,0"
+status 0 "all" q --mode all
+if [ "$(echo "$output" | tail -n +2 | sort -t, -k1n -k2n | head -n 3)" = "0,0,1,2.5,0.25,0.25,0
+0,1,1,2,0.25,0.25,1
+0,2,0,inf,0,0,0" ] && [ "$(echo "$output" | wc -l)" = 10 ]; then good; else bad "all: $output"; fi
+status 0 "clocked" q --engine clocked
+same "clocked" "$(q)"
+status 0 "moved" q --transform "1,0,0,0, 0,1,0,0, 0,0,1,3"
+says "moved" '^0,1,1,0.5,0.25,0.25,4$'
+status 0 "to a file" q --out "$work/r.csv" --report "$work/report.json"
+check "the file" sh -c "[ \"\$(cat $work/r.csv)\" = \"\$('$h' query ray-triangle -p $work/rays.csv -s $work/triangles.csv)\" ]"
+for key in clocks.total stalls.idle bytes.to_board bytes.to_host tests.run tests.skipped seconds.board seconds.host; do
+    output=$(cat "$work/report.json")
+    says "report: group of $key" "\"${key%.*}\": \{"
+    says "report: $key" "\"${key#*.}\": [0-9]"
+done
+says "report: tests run" '"run": 9,'
+for key in board engine target isa; do says "report: $key" "\"$key\": \"[a-z0-9]+\""; done
+
+# ---- bad input ----
+bad_rays() { # NAME WORDS LINE...: exit 3 with the words
+    bad_name=$1 bad_words=$2
+    shift 2
+    printf '%s\n' "$@" >"$work/bad.csv"
+    status 3 "$bad_name" "$h" query ray-triangle -p "$work/bad.csv" -s "$work/triangles.csv"
+    says "$bad_name" "$bad_words"
+}
+bad_rays "zero direction" 'bad\.csv:2:1: direction is zero' '1,2,3,4,5,6' '1,2,3,0,0,0'
+bad_rays "NaN" 'bad\.csv:1:1: ' 'nan,2,3,0,0,1'
+bad_rays "a word" 'bad\.csv:2:7: not a number' '1,2,3,4,5,6' '1,2,3,four,5,6'
+bad_rays "cut off" 'a ray has 6 numbers, here are 3' '1,2,3'
+bad_rays "empty" 'no ray in the file' ''
+status 3 "no such file" "$h" query ray-triangle -p "$work/none.csv" -s "$work/triangles.csv"
+says "no such file" 'none\.csv: No such file'
+head -n 2 "$work/rays.csv" >"$work/one.csv"
+status 3 "zip of different counts" "$h" query ray-triangle -m zip -p "$work/one.csv" -s "$work/triangles.csv"
+says "zip of different counts" 'as many secondaries as primaries: 3 and 1'
+status 3 "a matrix that is no number" q --transform "nan,0,0,0, 0,1,0,0, 0,0,1,3"
+
+echo '{"ddr": {"bytes": 72}}' >"$work/tiny.json"
+status 4 "more triangles than the DDR holds" q --board "$work/tiny.json"
+says "more triangles than the DDR holds" '[0-9]'
+echo '{"lanes": 65}' >"$work/lanes.json"
+status 3 "a knob out of its range" q --board "$work/lanes.json"
+says "a knob out of its range" 'lanes\.json: .*lanes.*64'
+echo '{"wings": 2}' >"$work/wings.json"
+status 3 "an unknown knob" q --board "$work/wings.json"
+says "an unknown knob" 'wings\.json: .*wings'
+status 4 "full disk" q --out /dev/full
+says "full disk" '/dev/full: cannot be written: No space left'
+status 4 "full disk in mode all" q --mode all --out /dev/full
+says "full disk in mode all" '/dev/full: cannot be written'
+status 4 "no such directory" q --out "$work/none/r.csv"
+status 4 "report to a full disk" q --out "$work/r.csv" --report /dev/full
+status 4 "waveform to a full disk" q --out "$work/r.csv" --engine clocked --vcd /dev/full
+report
