@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <string.h>
+#include <unistd.h>
 
 static bool standard(const char *path) {
     return strcmp(path, "-") == 0;
@@ -33,8 +34,10 @@ hp_status hp_file_write(const char *path, const void *data, size_t n, hp_fault *
 
 hp_status hp_file_probe(const char *path, hp_fault *fault) {
     if (!path || standard(path)) return HP_OK;
+    bool existed = access(path, F_OK) == 0;
     FILE *file = fopen(path, "ab"); /* keeps what stands there */
     if (!file) return refused(path, fault);
     fclose(file);
+    if (!existed) remove(path);
     return HP_OK;
 }
