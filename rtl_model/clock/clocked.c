@@ -1,6 +1,6 @@
 /* The clocked engine: the truth about time. In each clock every block decides on what it saw at the end of the clock
  * before; objects, tests and records move from block to block as they do on the board. */
-#include "clocked.h"
+#include "vcd.h"
 #include <hitpipe/pipe.h>
 #include <stdlib.h>
 
@@ -273,12 +273,14 @@ static void tick(hp_board *board) {
     bool write = c->activity == HP_ACTIVITY_WRITE;
     c->issued = c->moved = c->wrote = c->updated = false;
     c->full = hp_sram_full(&c->sram);
+    if (c->vcd) hp_vcd_probe(c->vcd, board);
     tick_ddr(board);
     c->stall = tick_activity(board);
     hp_board_count(board, busy, 1);
     count_clock(board, write);
     for (int d = 0; d < HP_DIRECTIONS; d++) c->channel[d].left -= c->channel[d].busy;
     c->decode_left -= c->decoding;
+    if (c->vcd) hp_vcd_dump(c->vcd, board);
     board->clock++;
 }
 
@@ -374,6 +376,7 @@ static hp_status clocked_create(hp_board *board) {
     board->state = c;
     c->ddr = hp_controller_reset(&board->config);
     c->sram.capacity = board->config.sram_records;
+    if (board->def.vcd && !(c->vcd = hp_vcd_create(board))) return HP_ERROR_MEMORY;
     hp_status secondary = hp_secondary_create(&c->secondary, &board->config, &board->ddr);
     hp_status pipe = hp_delay_line_create(&c->pipe, latency, (unsigned)board->config.lanes);
     return secondary != HP_OK ? secondary : pipe;
@@ -381,6 +384,7 @@ static hp_status clocked_create(hp_board *board) {
 
 static void clocked_destroy(hp_board *board) {
     hp_clocked *c = board->state;
+    hp_vcd_destroy(c->vcd, board);
     hp_secondary_free(&c->secondary);
     hp_delay_line_free(&c->pipe);
     hp_sram_free(&c->sram);
