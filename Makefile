@@ -48,7 +48,8 @@ ISA_FLAGS_neon   :=
 
 # ---- flags: the same bits everywhere, so no contraction and no fast-math -------------------------------------------------
 WARN   := -Wall -Wextra -Werror -Wshadow -Wvla -Wstrict-prototypes -Wmissing-prototypes
-BASE   := -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-fast-math $(WARN) -fPIC -pthread -fopenmp -g -MMD -MP
+# gcc 12 at -O3 can lose the rounding of a double to a float in its straight-line vectoriser, hence the third flag.
+BASE   := -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-fast-math -fno-tree-slp-vectorize $(WARN) -fPIC -pthread -fopenmp -g -MMD -MP
 ifneq ($(SANITIZE),)
 BASE   += -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer
 LDSAN  := -fsanitize=$(SANITIZE)
