@@ -4,10 +4,10 @@
 
 typedef hp_vector colour; /* linear red, green, blue */
 
-/* The sun stands in the west-north-west, 30 degrees high: from the left of the default view. */
-static const hp_vector sun = {-0.80, 0.32, 0.51};
-static const colour sunlight = {2.3, 2.05, 1.65}, skylight = {0.30, 0.38, 0.52};
-static const colour horizon = {0.62, 0.74, 0.86}, zenith = {0.13, 0.28, 0.58};
+/* The sun stands in the west-north-west, 26 degrees high: from the left of the default view. */
+static const hp_vector sun = {-0.83, 0.34, 0.44};
+static const colour sunlight = {2.5, 2.15, 1.65}, skylight = {0.24, 0.33, 0.50};
+static const colour horizon = {0.66, 0.76, 0.86}, zenith = {0.16, 0.34, 0.66};
 
 /* Tints from the lowest to the highest point. */
 static const colour tints[] = {
@@ -32,7 +32,7 @@ static colour tint(const hp_bounds *bounds, double z) {
 }
 
 static colour sky(const float *ray) {
-    return mix(horizon, zenith, sqrt(fmax(0, (double)ray[5])));
+    return mix(horizon, zenith, fmin(1, fmax(0, 2.2 * ((double)ray[5] + 0.3))));
 }
 
 static hp_vector point_of(const hp_result *hit) {
@@ -48,6 +48,22 @@ static hp_vector normal_of(const hp_picture *picture, size_t pixel) {
     hp_vector normal = hp_vector_unit(hp_vector_cross(hp_vector_sub(v[1], v[0]), hp_vector_sub(v[2], v[0])));
     bool away = normal.x * (double)ray[3] + normal.y * (double)ray[4] + normal.z * (double)ray[5] > 0;
     return away ? (hp_vector){-normal.x, -normal.y, -normal.z} : normal;
+}
+
+/* The normal, smoothed over the neighbouring pixels at about the same distance: triangles of a pixel's size would
+ * glitter. */
+static hp_vector smooth_normal(const hp_picture *picture, size_t pixel) {
+    size_t row = pixel / picture->width, column = pixel % picture->width;
+    double distance = (double)picture->results[pixel].T;
+    hp_vector sum = {0};
+    for (size_t i = row > 0 ? row - 1 : 0; i <= row + 1 && i < picture->height; i++)
+        for (size_t j = column > 0 ? column - 1 : 0; j <= column + 1 && j < picture->width; j++) {
+            size_t near = i * picture->width + j;
+            bool same =
+                picture->results[near].F && fabs((double)picture->results[near].T - distance) < 0.03 * distance;
+            if (same) sum = hp_vector_along(sum, i == row && j == column ? 2 : 1, normal_of(picture, near));
+        }
+    return hp_vector_unit(sum);
 }
 
 static double diagonal(const hp_bounds *bounds) {
@@ -80,7 +96,7 @@ static colour shade(const hp_picture *picture, size_t pixel, double nearest) {
     const hp_result *hit = &picture->results[pixel];
     const float *ray = picture->rays + pixel * HP_RAY_WORDS;
     if (!hit->F) return sky(ray);
-    hp_vector normal = normal_of(picture, pixel);
+    hp_vector normal = smooth_normal(picture, pixel);
     bool dark = picture->shadows && picture->shadows[pixel];
     double sunny = dark ? 0 : fmax(0, hp_vector_dot(normal, sun)), open = 0.6 + 0.4 * normal.z;
     colour light = hp_vector_along(times(sunlight, (colour){sunny, sunny, sunny}), open, skylight);

@@ -28,7 +28,7 @@ hp_camera hp_camera_for(const hp_bounds *bounds, size_t width, size_t height) {
     for (int i = 0; i < 3; i++) camera.at[i] = (bounds->low[i] + bounds->high[i]) / 2;
     /* a little from the west; solid things from 24 degrees above, landscapes lower and nearer, past their edges */
     bool landscape = is_landscape(bounds);
-    const hp_vector away = hp_vector_unit((hp_vector){-0.35, -1, landscape ? 0.36 : 0.48});
+    const hp_vector away = hp_vector_unit((hp_vector){-0.35, -1, landscape ? 0.40 : 0.48});
     camera.eye[0] = camera.at[0] + away.x;
     camera.eye[1] = camera.at[1] + away.y;
     camera.eye[2] = camera.at[2] + away.z;
@@ -42,7 +42,7 @@ hp_camera hp_camera_for(const hp_bounds *bounds, size_t width, size_t height) {
         far = fmax(far, fabs(hp_vector_dot(v, axes.right)) / horizontal + back);
         far = fmax(far, fabs(hp_vector_dot(v, axes.up)) / vertical + back);
     }
-    if (landscape) far *= 0.55;
+    if (landscape) far *= 0.46;
     if (far == 0) far = 1;
     camera.eye[0] = camera.at[0] + far * away.x;
     camera.eye[1] = camera.at[1] + far * away.y;
