@@ -5,9 +5,7 @@
 #include <immintrin.h>
 
 #define HP_FLUSH_IN_HARDWARE 1
-#ifndef HP_VECTORS
-#define HP_VECTORS 1
-#endif
+#define HP_VECTORS 2
 
 enum { HP_LANES = 8 };
 

@@ -6,9 +6,7 @@
 #include <immintrin.h>
 
 #define HP_FLUSH_IN_HARDWARE 1
-#ifndef HP_VECTORS
 #define HP_VECTORS 2
-#endif
 
 enum { HP_LANES = 16 };
 

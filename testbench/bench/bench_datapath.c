@@ -1,0 +1,244 @@
+/* The bare datapath: millions of ray-triangle tests a second on every instruction set, against the classic scalar
+ * code of 1997 in the same run and against what the execution ports allow.
+ *
+ * The scene is a terrain and a packet of 256 rays from a camera above it. Few vectors of tests survive the decision
+ * on u and v, as in any scene of more than a handful of triangles. Preparing the blocks of 512 triangles is inside
+ * the figures.
+ *
+ * The bound. To the decision on u and v a vector of tests takes, with the edges prepared,
+ *
+ *   s 3 sub | p, q 2 (6 mul, 3 sub) | det, u, v 3 (3 mul, 2 add) | u + v 1 add | min, max 2 | 4 compares      = 43
+ *
+ * operations, each of which needs a floating-point port: on the two ports of x86 cores from Haswell to Sapphire
+ * Rapids 21.5 clocks for 4, 8 or 16 tests. Mask operations, branches, loads, preparing and the tests that go on to t
+ * are not in it. What the ports give is measured, not assumed: after each block a loop of independent multiplications
+ * and additions of the same width runs for a while, so that clock frequency and a busy neighbour on the same core
+ * weigh on both alike. For the same reason the columns take turns within a round, and time is processor time. A
+ * column's figure is the median over rounds. */
+#include "rtl_model/pipes/wide.h"
+#include <hitpipe/pipe.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum {
+    SIDE = 182,
+    TRIANGLES = 2 * SIDE * SIDE,
+    RAYS = HP_PACKET_PRIMARIES,
+    CLASSIC_RAYS = 8,
+    TURN = 32 * HP_BLOCK,
+    ROUNDS = 9,
+    COLUMNS_MAX = 8
+};
+
+static const double operations = 43;
+
+static float triangles[TRIANGLES][9];
+static float rays[RAYS][6];
+
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* ---- the classic code: Moller and Trumbore 1997, their non-culling branch, in float
+ * --------------------------------------- */
+
+#define EPSILON 0.000001f
+#define CROSS(dest, v1, v2)                                                                                          \
+    dest[0] = v1[1] * v2[2] - v1[2] * v2[1];                                                                         \
+    dest[1] = v1[2] * v2[0] - v1[0] * v2[2];                                                                         \
+    dest[2] = v1[0] * v2[1] - v1[1] * v2[0];
+#define DOT(v1, v2) (v1[0] * v2[0] + v1[1] * v2[1] + v1[2] * v2[2])
+#define SUB(dest, v1, v2)                                                                                            \
+    dest[0] = v1[0] - v2[0];                                                                                         \
+    dest[1] = v1[1] - v2[1];                                                                                         \
+    dest[2] = v1[2] - v2[2];
+
+static int intersect_triangle(const float orig[3], const float dir[3], const float vert0[3], const float vert1[3],
+                              const float vert2[3], float *t, float *u, float *v) {
+    float edge1[3], edge2[3], tvec[3], pvec[3], qvec[3];
+    float det, inv_det;
+    SUB(edge1, vert1, vert0);
+    SUB(edge2, vert2, vert0);
+    CROSS(pvec, dir, edge2);
+    det = DOT(edge1, pvec);
+    if (det > -EPSILON && det < EPSILON) return 0;
+    inv_det = 1.0f / det;
+    SUB(tvec, orig, vert0);
+    *u = DOT(tvec, pvec) * inv_det;
+    if (*u < 0.0f || *u > 1.0f) return 0;
+    CROSS(qvec, tvec, edge1);
+    *v = DOT(dir, qvec) * inv_det;
+    if (*v < 0.0f || *u + *v > 1.0f) return 0;
+    *t = DOT(edge2, qvec) * inv_det;
+    return 1;
+}
+
+/* ---- one column of the table
+ * ---------------------------------------------------------------------------------------- */
+
+typedef struct column {
+    const char *name;
+    const hp_wide_pipe *pipe; /* NULL: the classic code */
+    double tests, seconds;    /* of this round */
+    double peak_operations, peak_seconds;
+    double rate[ROUNDS], of_bound[ROUNDS];
+    hp_best best;
+} column;
+
+static hp_lanes lanes;
+
+static void run_classic(column *c, uint32_t first, uint32_t n) {
+    for (unsigned r = 0; r < CLASSIC_RAYS; r++) {
+        const float *ray = rays[r * (RAYS / CLASSIC_RAYS)];
+        float t, u, v;
+        for (uint32_t i = first; i < first + n; i++) {
+            const float *p = triangles[i];
+            if (intersect_triangle(ray, ray + 3, p, p + 3, p + 6, &t, &u, &v) && t >= 0 && t < c->best.T[r])
+                c->best.T[r] = t, c->best.index[r] = i;
+        }
+    }
+    c->tests += (double)CLASSIC_RAYS * n;
+}
+
+static void run_wide(column *c, uint32_t first, uint32_t n, bool flush) {
+    static _Alignas(64) float prepared[HP_BLOCK * HP_TRIANGLE_WORDS];
+    c->pipe->prepare(triangles[first], n, NULL, flush, prepared);
+    c->pipe->closest(&lanes, 0, RAYS, prepared, n, first, flush, &c->best);
+    c->tests += (double)RAYS * n;
+}
+
+/* Independent operations on vectors of a column's width: how many; 0 where there is no such loop. */
+static double run_peak(const char *isa) {
+    enum { TURNS = 2500 };
+#if defined __x86_64__
+#define EIGHT(v)                                                                                                     \
+    "vmulps %%" v "0, %%" v "0, %%" v "1\n\tvaddps %%" v "0, %%" v "0, %%" v "2\n\t"                                 \
+    "vmulps %%" v "0, %%" v "0, %%" v "3\n\tvaddps %%" v "0, %%" v "0, %%" v "4\n\t"                                 \
+    "vmulps %%" v "0, %%" v "0, %%" v "5\n\tvaddps %%" v "0, %%" v "0, %%" v "6\n\t"                                 \
+    "vmulps %%" v "0, %%" v "0, %%" v "7\n\tvaddps %%" v "0, %%" v "0, %%" v "8\n\t"
+#define PEAK(v)                                                                                                      \
+    for (unsigned i = 0; i < TURNS; i++)                                                                             \
+    __asm__ volatile("vpxor %%xmm0, %%xmm0, %%xmm0\n\t" EIGHT(v) EIGHT(v)                                            \
+                     :                                                                                               \
+                     :                                                                                               \
+                     : "xmm0", "xmm1", "xmm2", "xmm3", "xmm4", "xmm5", "xmm6", "xmm7", "xmm8")
+    if (strcmp(isa, "avx512") == 0)
+        PEAK("zmm");
+    else if (strcmp(isa, "avx2") == 0)
+        PEAK("ymm");
+    else
+        return 0;
+    return 16 * TURNS;
+#else
+    (void)isa;
+    (void)TURNS;
+    return 0;
+#endif
+}
+
+/* ---- scene, table
+ * -------------------------------------------------------------------------------------------------------- */
+
+static float height(unsigned i, unsigned j) {
+    return 6 * sinf(0.07f * (float)i) * cosf(0.05f * (float)j) + sinf(0.31f * (float)i + 0.17f * (float)j);
+}
+
+static void put_vertex(float *to, unsigned i, unsigned j) {
+    to[0] = (float)j, to[1] = (float)i, to[2] = height(i, j);
+}
+
+static void make_scene(void) {
+    float(*t)[9] = triangles;
+    for (unsigned i = 0; i < SIDE; i++)
+        for (unsigned j = 0; j < SIDE; j++, t += 2) {
+            put_vertex(t[0], i, j), put_vertex(t[0] + 3, i, j + 1), put_vertex(t[0] + 6, i + 1, j);
+            put_vertex(t[1], i, j + 1), put_vertex(t[1] + 3, i + 1, j + 1), put_vertex(t[1] + 6, i + 1, j);
+        }
+    for (unsigned i = 0; i < RAYS; i++) {
+        float x = (float)(i % 16) / 16 - 0.5f, y = (float)(i / 16) / 16 - 0.5f;
+        float ray[6] = {SIDE / 2, -40, 60, 1.1f * x, 1, y - 0.75f};
+        memcpy(rays[i], ray, sizeof ray);
+        for (unsigned w = 0; w < 6; w++) lanes.word[w][i] = ray[w];
+    }
+}
+
+static int by_value(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *values) {
+    qsort(values, ROUNDS, sizeof *values, by_value);
+    return values[ROUNDS / 2];
+}
+
+static double lanes_of(const char *isa) {
+    return strcmp(isa, "avx512") == 0 ? 16 : 8;
+}
+
+static void run_block(column *c, uint32_t first, uint32_t n, bool flush) {
+    double begin = now();
+    if (c->pipe)
+        run_wide(c, first, n, flush);
+    else
+        run_classic(c, first, n);
+    double middle = now();
+    c->peak_operations += run_peak(c->name);
+    c->seconds += middle - begin;
+    c->peak_seconds += now() - middle;
+}
+
+/* Some milliseconds at a stretch: a core takes a while to settle when the width of its vectors changes. */
+static void run_turn(column *c, uint32_t first, bool flush) {
+    for (uint32_t end = first + TURN; first < end && first < TRIANGLES; first += HP_BLOCK) {
+        uint32_t left = TRIANGLES - first;
+        run_block(c, first, left < HP_BLOCK ? left : HP_BLOCK, flush);
+    }
+}
+
+static void run_round(column *columns, unsigned n, unsigned round, bool flush) {
+    for (unsigned i = 0; i < n; i++) {
+        column *c = &columns[i];
+        c->tests = c->seconds = c->peak_operations = c->peak_seconds = 0;
+        for (unsigned r = 0; r < RAYS; r++) c->best.T[r] = INFINITY, c->best.index[r] = HP_NO_INDEX;
+    }
+    for (uint32_t first = 0; first < TRIANGLES; first += TURN)
+        for (unsigned i = 0; i < n; i++) run_turn(&columns[i], first, flush);
+    for (unsigned i = 0; i < n; i++) {
+        column *c = &columns[i];
+        c->rate[round] = c->tests / c->seconds;
+        double bound = c->peak_operations / c->peak_seconds / operations * lanes_of(c->name);
+        c->of_bound[round] = bound > 0 ? c->rate[round] / bound : 0;
+    }
+}
+
+static void print_table(column *columns, unsigned n) {
+    double classic = median(columns[0].rate);
+    printf("%-10s %14s %12s %12s\n", "isa", "M tests/s", "x classic", "% of bound");
+    for (unsigned i = 0; i < n; i++) {
+        double rate = i ? median(columns[i].rate) : classic, of_bound = median(columns[i].of_bound);
+        printf("%-10s %14.1f %12.1f", columns[i].name, rate * 1e-6, rate / classic);
+        if (of_bound > 0) printf(" %12.1f", 100 * of_bound);
+        printf("\n");
+    }
+}
+
+int main(void) {
+    static column columns[COLUMNS_MAX] = {{.name = "classic"}};
+    unsigned n = 1;
+    make_scene();
+    for (unsigned i = 0; hp_isa_name(i) && n < COLUMNS_MAX; i++, n++)
+        columns[n] = (column){.name = hp_isa_name(i), .pipe = hp_wide_pipe_of(hp_isa_name(i), HP_PAIR_RAY_TRIANGLE)};
+    for (int flush = 0; flush < 2; flush++) {
+        for (unsigned round = 0; round < ROUNDS; round++) run_round(columns, n, round, flush);
+        printf("ray-triangle, closest, %d rays x %d triangles, %s, median of %d rounds\n", RAYS, TRIANGLES,
+               flush ? "flush" : "gradual", ROUNDS);
+        print_table(columns, n);
+    }
+    return 0;
+}
