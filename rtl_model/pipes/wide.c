@@ -33,6 +33,8 @@ enum {
 #undef HP_PAIR
 };
 
+#include "rtl_model/pipes/square.h"
+
 #define HP_MEANING gradual
 #define HP_WIDE_FLUSH 0
 #include "rtl_model/pipes/wide_pipes.h"

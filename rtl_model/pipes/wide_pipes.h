@@ -9,21 +9,34 @@ HP_INLINE void HP_NAMED(broadcast)(const float *from, unsigned n, num *out) {
     foreach (w, n) out[w] = constant(from[w]);
 }
 
-/* n objects from array of structures into lanes and back; lanes past n repeat object 0. */
+/* n objects from array of structures into lanes and back, by squares of four objects and four words; the last square
+ * of an object reaches back so as not to reach over its end. Lanes past n repeat object 0. */
 HP_INLINE void HP_NAMED(gather)(const float *objects, size_t step, unsigned words, size_t n, num *out) {
     float lane[HP_PREPARED_MAX][HP_CHUNK];
-    for (size_t i = 0; i < HP_CHUNK; i++) {
-        const float *object = objects + (i < n ? i : 0) * step;
-        foreach (w, words) lane[w][i] = object[w];
+    for (size_t i = 0; i < HP_CHUNK; i += 4) {
+        const float *object[4];
+        foreach (k, 4) object[k] = objects + (i + k < n ? i + k : 0) * step;
+        foreach (group, (words + 3) / 4) {
+            unsigned w = 4 * group + 4 <= words ? 4 * group : words - 4;
+            square rows = square_load(object[0] + w, object[1] + w, object[2] + w, object[3] + w);
+            square_store(square_turn(rows), &lane[w][i], &lane[w + 1][i], &lane[w + 2][i], &lane[w + 3][i]);
+        }
     }
     foreach (w, words) out[w] = HP_NAMED(load)(lane[w]);
 }
 
 HP_INLINE void HP_NAMED(scatter)(const num *in, unsigned words, size_t n, float *objects) {
-    float lane[HP_PREPARED_MAX][HP_CHUNK];
+    float lane[HP_PREPARED_MAX][HP_CHUNK], spare[HP_PREPARED_MAX];
     foreach (w, words) HP_NAMED(store)(lane[w], in[w]);
-    for (size_t i = 0; i < n; i++)
-        foreach (w, words) objects[i * words + w] = lane[w][i];
+    for (size_t i = 0; i < n; i += 4) {
+        float *object[4];
+        foreach (k, 4) object[k] = i + k < n ? objects + (i + k) * words : spare;
+        foreach (group, (words + 3) / 4) {
+            unsigned w = 4 * group + 4 <= words ? 4 * group : words - 4;
+            square rows = square_load(&lane[w][i], &lane[w + 1][i], &lane[w + 2][i], &lane[w + 3][i]);
+            square_store(square_turn(rows), object[0] + w, object[1] + w, object[2] + w, object[3] + w);
+        }
+    }
 }
 
 /* The matrix in every lane; false when the transformer is bypassed. */
