@@ -32,7 +32,7 @@ static const struct argp_option option_table[] = {
     {"png", KEY_PNG, "X.png", 0, "a shaded picture", 1},
     {"no-shadows", KEY_NO_SHADOWS, NULL, 0, "do not ask the board for the picture's shadows", 1},
     {NULL, 0, NULL, 0, "The rays:", 2},
-    {"size", KEY_SIZE, "WxH", 0, "pixels of the picture (default 512x288)", 2},
+    {"size", KEY_SIZE, "WxH", 0, "pixels of the picture (default 400x225)", 2},
     {"eye", KEY_EYE, "X,Y,Z", 0, "where the camera stands (default: it sees the whole scene)", 2},
     {"at", KEY_AT, "X,Y,Z", 0, "what it looks at (default: the middle of the scene)", 2},
     {"up", KEY_UP, "X,Y,Z", 0, "which way is up in the picture (default 0,0,1)", 2},
@@ -254,7 +254,7 @@ static hp_status probe(const trace_options *options, hp_fault *fault) {
 }
 
 int hp_verb_trace(int argc, char **argv) {
-    trace_options options = {.cli = hp_cli_begin(argv[0]), .mode = HP_MODE_CLOSEST, .width = 512, .height = 288};
+    trace_options options = {.cli = hp_cli_begin(argv[0]), .mode = HP_MODE_CLOSEST, .width = 400, .height = 225};
     argp_parse(&argp, argc, argv, 0, NULL, &options);
     hp_fault fault = {0};
     trace_run run = {.options = &options, .bar = &options.cli.bar};

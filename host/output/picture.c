@@ -4,9 +4,9 @@
 
 typedef hp_vector colour; /* linear red, green, blue */
 
-/* The sun stands in the west-north-west, 26 degrees high: from the left of the default view. */
-static const hp_vector sun = {-0.83, 0.34, 0.44};
-static const colour sunlight = {2.5, 2.15, 1.65}, skylight = {0.24, 0.33, 0.50};
+/* The sun stands in the west-north-west, 17 degrees high: from the left of the default view. */
+static const hp_vector sun = {-0.88, 0.37, 0.295};
+static const colour sunlight = {3.3, 2.6, 1.75}, skylight = {0.26, 0.36, 0.55};
 static const colour horizon = {0.66, 0.76, 0.86}, zenith = {0.16, 0.34, 0.66};
 
 /* Tints from the lowest to the highest point. */
