@@ -10,6 +10,7 @@
  * buffer completes it with HP_ERROR_LENGTH.
  *  - cancel makes the transfer complete, from a later poll, with HP_ERROR_CANCELLED, or with its result if that came
  * first.
+ *  - Nothing comes that the board sent before the transport was opened: a link that buffers is drained by open.
  *  - After HP_ERROR_DISCONNECTED nothing but cancel, poll and close is of use.
  * A transport is used by one thread at a time; different transports are independent. */
 #ifndef HITPIPE_TRANSPORT_H

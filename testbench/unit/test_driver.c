@@ -55,6 +55,8 @@ static fault choose(void *context, bool in, unsigned number, const uint8_t *byte
 typedef struct bench {
     bool stranger;
     bool secondary_outer;
+    unsigned records; /* most in a RESULT */
+    unsigned buffers;
     plan plan;
     hp_transport *board;
     hp_device *device;
@@ -67,13 +69,13 @@ typedef struct bench {
 
 static hp_status open_board(bench *b, hp_transport **board) {
     if (b->stranger)
-        return stranger_open(&(stranger_def){PACKET, BUFFERS, LANES, RECORDS, b->secondary_outer}, board);
+        return stranger_open(&(stranger_def){PACKET, b->buffers, LANES, b->records, b->secondary_outer}, board);
     hp_board_def def = {.isa = "plain", .threads = 1};
     hp_config_preset(&def.config, "ideal");
     def.config.packet_primaries = PACKET;
-    def.config.packet_buffers = BUFFERS;
+    def.config.packet_buffers = b->buffers;
     def.config.lanes = LANES;
-    def.config.packet_results = RECORDS;
+    def.config.packet_results = b->records;
     def.config.loop_order = b->secondary_outer;
     return hp_transport_model(&def, board);
 }
@@ -127,6 +129,8 @@ static int make_bench(void **state, bool stranger) {
     hpt_random random = hpt_random_seed(7);
     if (!b) return -1;
     b->stranger = stranger;
+    b->records = RECORDS;
+    b->buffers = BUFFERS;
     for (unsigned i = 0; i < RAYS; i++)
         for (unsigned k = 0; k < 6; k++) b->rays[i][k] = (float)hpt_random_below(&random, 2001) / 1000 - 1;
     for (unsigned i = 0; i < TRIANGLES; i++)
@@ -323,6 +327,20 @@ static void one_fault(void **state, fault_kind kind, unsigned argument) {
 
 static void one_packet_dropped(void **state) {
     one_fault(state, FAULT_DROP, 0);
+}
+/* When a whole answer is gone, the next one looks like it but for its tag. */
+static void one_answer_dropped(void **state) {
+    bench *b = *state;
+    b->records = PACKET;
+    one_fault(state, FAULT_DROP, 0);
+    b->records = RECORDS;
+}
+/* With one buffer, the only credit there is was in the answer that is gone. */
+static void the_only_credit_dropped(void **state) {
+    bench *b = *state;
+    b->buffers = 1;
+    one_fault(state, FAULT_DROP, 0);
+    b->buffers = BUFFERS;
 }
 static void one_packet_doubled(void **state) {
     one_fault(state, FAULT_DUPLICATE, 0);
@@ -524,6 +542,8 @@ int main(void) {
         EACH_TEST(a_stencil_masks),
         EACH_TEST(several_packets_are_under_way),
         EACH_TEST(one_packet_dropped),
+        EACH_TEST(one_answer_dropped),
+        EACH_TEST(the_only_credit_dropped),
         EACH_TEST(one_packet_doubled),
         EACH_TEST(one_packet_swapped),
         EACH_TEST(one_packet_cut_to_a_byte),
