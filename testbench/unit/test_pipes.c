@@ -120,6 +120,7 @@ static const decision decisions[] = {
     {"a point for a triangle", {1, 1, -2, 0, 0, 1}, {1, 1, 0, 1, 1, 0, 1, 1, 0}, 0, 0},
     {"a point, from it", {1, 1, 0, 0, 0, 1}, {1, 1, 0, 1, 1, 0, 1, 1, 0}, 0, 0},
     {"det overflows", {1, 1, -2, 0, 0, 0x1p127f}, {0, 0, 0, 0, 0x1p70f, 0, 0x1p70f, 0, 0}, 0, 0},
+    {"det overflows, t does not", {1, 1, -2, 0, 0, 0x1p127f}, FRONT, 0, 0},
     {"origin too far", {1, 1, -0x1.8p127f, 0, 0, 1}, {0, 0, 0x1.8p127f, 0, 4, 0, 4, 0, 0}, 0, 0},
     {"T overflows", {1, 1, -0x1p100f, 0, 0, 0x1p-60f}, FRONT, 0, 0},
     {"T just fits", {1, 1, -0x1p100f, 0, 0, 0x1p-27f}, FRONT, 1, 0x1p127f},
