@@ -67,6 +67,7 @@ static void wrong_boards_are_refused(void **state) {
     refused("{\"preset\": 7}", "preset");
     refused("{\"pipes\": [\"ray-moon\"]}", "ray-moon");
     refused("{\"pipes\": [1]}", "pipes");
+    refused("{\"ddr\": {\"refresh_interval\": 10, \"refresh_clocks\": 9}}", "ddr.refresh_interval");
 }
 
 static void boards_are_named_or_files(void **state) {
