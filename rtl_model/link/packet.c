@@ -2,35 +2,6 @@
 #include <hitpipe/packet.h>
 #include <string.h>
 
-uint16_t hp_get16(const void *at) {
-    const uint8_t *byte = at;
-    return (uint16_t)(byte[0] | byte[1] << 8);
-}
-
-uint32_t hp_get32(const void *at) {
-    return hp_get16(at) | (uint32_t)hp_get16((const uint8_t *)at + 2) << 16;
-}
-
-uint64_t hp_get64(const void *at) {
-    return hp_get32(at) | (uint64_t)hp_get32((const uint8_t *)at + 4) << 32;
-}
-
-void hp_put16(void *at, uint16_t value) {
-    uint8_t *byte = at;
-    byte[0] = (uint8_t)value;
-    byte[1] = (uint8_t)(value >> 8);
-}
-
-void hp_put32(void *at, uint32_t value) {
-    hp_put16(at, (uint16_t)value);
-    hp_put16((uint8_t *)at + 2, (uint16_t)(value >> 16));
-}
-
-void hp_put64(void *at, uint64_t value) {
-    hp_put32(at, (uint32_t)value);
-    hp_put32((uint8_t *)at + 4, (uint32_t)(value >> 32));
-}
-
 size_t hp_packet_bytes(size_t length) {
     return HP_HEADER_BYTES + (length ? length + HP_CRC_BYTES : 0);
 }
