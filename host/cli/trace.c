@@ -27,8 +27,8 @@ enum {
 
 static const struct argp_option option_table[] = {
     {NULL, 0, NULL, 0, "What is written:", 1},
-    {"out", KEY_OUT, "X.exr|X.csv", 0, "results: channels T, index, F, CP.X, CP.Y, CP.Z, or the columns of `query`",
-     1},
+    {"out", KEY_OUT, "X.exr|X.csv", 0,
+     "results: channels T, index, F, CP.X, CP.Y, CP.Z, or the columns of `query`; - is standard output", 1},
     {"png", KEY_PNG, "X.png", 0, "a shaded picture", 1},
     {"no-shadows", KEY_NO_SHADOWS, NULL, 0, "do not ask the board for the picture's shadows", 1},
     {NULL, 0, NULL, 0, "The rays:", 2},
@@ -84,8 +84,69 @@ static void check_together(const trace_options *trace, struct argp_state *state)
     if (trace->moving && !trace->flight) argp_error(state, "--moving needs --flight");
     if (trace->mode == HP_MODE_ALL && !trace->flight) argp_error(state, "--mode all needs --flight");
     if (trace->flight && trace->out && ends_in(trace->out, ".exr")) argp_error(state, "a flight is written as .csv");
-    if (trace->out && !ends_in(trace->out, ".exr") && !ends_in(trace->out, ".csv") && trace->out[0] == '-')
-        argp_error(state, "--out takes a file; %s is none", trace->out);
+}
+
+/* The next three take the options of their group; false for others. */
+static bool parse_camera(trace_options *trace, int key, char *argument, struct argp_state *state) {
+    switch (key) {
+    case KEY_CAMERA:
+        set_camera(trace, argument, state);
+        return true;
+    case KEY_EYE:
+        numbers(state, "--eye", argument, trace->camera.eye, 3);
+        return trace->eye = true;
+    case KEY_AT:
+        numbers(state, "--at", argument, trace->camera.at, 3);
+        return trace->at = true;
+    case KEY_UP:
+        numbers(state, "--up", argument, trace->camera.up, 3);
+        return trace->up = true;
+    case KEY_FOV:
+        numbers(state, "--fov", argument, &trace->camera.fov, 1);
+        return trace->fov = true;
+    case KEY_SIZE:
+        if (!hp_cli_pair(argument, &trace->width, &trace->height) || trace->width > 65536 || trace->height > 65536)
+            argp_error(state, "--size takes WxH, each from 1 to 65536, not '%s'", argument);
+        return true;
+    default:
+        return false;
+    }
+}
+
+static bool parse_rays(trace_options *trace, int key, char *argument, struct argp_state *state) {
+    switch (key) {
+    case KEY_RAYS:
+        trace->rays = argument;
+        return true;
+    case KEY_FLIGHT:
+        set_flight(trace, argument, state);
+        return true;
+    case KEY_MOVING:
+        return trace->moving = true;
+    case KEY_MODE:
+        trace->mode = hp_mode_from_name(argument);
+        if (!trace->mode || trace->mode == HP_MODE_ZIP)
+            argp_error(state, "--mode is closest, any or all, not '%s'", argument);
+        return true;
+    default:
+        return false;
+    }
+}
+
+static bool parse_heightfield(trace_options *trace, int key, char *argument, struct argp_state *state) {
+    double *spacing = trace->scene_def.spacing;
+    switch (key) {
+    case KEY_SPACING:
+        numbers(state, "--spacing", argument, spacing, 2);
+        if (spacing[0] == 0 || spacing[1] == 0) argp_error(state, "--spacing: lengths between samples are not zero");
+        return true;
+    case KEY_RESAMPLE:
+        if (!hp_cli_pair(argument, &trace->scene_def.rows, &trace->scene_def.columns))
+            argp_error(state, "--resample takes RxC, not '%s'", argument);
+        return true;
+    default:
+        return false;
+    }
 }
 
 static error_t parse(int key, char *argument, struct argp_state *state) {
@@ -103,52 +164,6 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
     case KEY_NO_SHADOWS:
         trace->no_shadows = true;
         return 0;
-    case KEY_RAYS:
-        trace->rays = argument;
-        return 0;
-    case KEY_MOVING:
-        trace->moving = true;
-        return 0;
-    case KEY_CAMERA:
-        set_camera(trace, argument, state);
-        return 0;
-    case KEY_FLIGHT:
-        set_flight(trace, argument, state);
-        return 0;
-    case KEY_EYE:
-        numbers(state, "--eye", argument, trace->camera.eye, 3);
-        trace->eye = true;
-        return 0;
-    case KEY_AT:
-        numbers(state, "--at", argument, trace->camera.at, 3);
-        trace->at = true;
-        return 0;
-    case KEY_UP:
-        numbers(state, "--up", argument, trace->camera.up, 3);
-        trace->up = true;
-        return 0;
-    case KEY_FOV:
-        numbers(state, "--fov", argument, &trace->camera.fov, 1);
-        trace->fov = true;
-        return 0;
-    case KEY_SPACING:
-        numbers(state, "--spacing", argument, trace->scene_def.spacing, 2);
-        if (trace->scene_def.spacing[0] == 0 || trace->scene_def.spacing[1] == 0)
-            argp_error(state, "--spacing: lengths between samples are not zero");
-        return 0;
-    case KEY_SIZE:
-        if (!hp_cli_pair(argument, &trace->width, &trace->height) || trace->width > 65536 || trace->height > 65536)
-            argp_error(state, "--size takes WxH, each from 1 to 65536, not '%s'", argument);
-        return 0;
-    case KEY_RESAMPLE:
-        if (!hp_cli_pair(argument, &trace->scene_def.rows, &trace->scene_def.columns))
-            argp_error(state, "--resample takes RxC, not '%s'", argument);
-        return 0;
-    case KEY_MODE:
-        trace->mode = hp_mode_from_name(argument);
-        if (!trace->mode || trace->mode == HP_MODE_ZIP)
-            argp_error(state, "--mode is closest, any or all, not '%s'", argument);
-        return 0;
     case ARGP_KEY_ARG:
         if (trace->scene_path) argp_error(state, "'%s' is one argument too many", argument);
         trace->scene_path = argument;
@@ -157,7 +172,10 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
         check_together(trace, state);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_camera(trace, key, argument, state) || parse_rays(trace, key, argument, state) ||
+                       parse_heightfield(trace, key, argument, state)
+                   ? 0
+                   : ARGP_ERR_UNKNOWN;
     }
 }
 

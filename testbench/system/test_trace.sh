@@ -47,6 +47,8 @@ check "and never hit" test "$(cat "$work/r.csv")" = "primary,secondary,F,T,cpx,c
 0,0,1,1,0.25,0.25,0
 1,0,1,0.5,0.5,0,0
 2,4294967295,0,inf,0,0,0"
+status 0 "rays to standard output" "$h" trace "$work/mesh.obj" --rays "$work/rays.csv" --out -
+check "nothing else is there" test "$("$h" trace "$work/mesh.obj" --rays "$work/rays.csv" --out -)" = "$(cat "$work/r.csv")"
 status 0 "rays to EXR" "$h" trace "$work/mesh.obj" --rays "$work/rays.csv" --out "$work/r.exr"
 status 0 "the default camera sees a mesh" "$h" trace "$work/mesh.obj" --size 32x32 --json
 check "it hits" sh -c "[ \"\$('$h' trace '$work/mesh.obj' --size 32x32 --json | grep -oE '\"hits\": [0-9]+' | grep -oE '[0-9]+')\" -gt 50 ]"
