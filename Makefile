@@ -11,7 +11,7 @@ JOBS    ?= $(shell nproc 2>/dev/null || echo 2)
 ifeq ($(MAKELEVEL),0)
 MAKEFLAGS += -j$(JOBS)
 endif
-MAKEFLAGS += --no-print-directory
+MAKEFLAGS += -r --no-print-directory
 # V=1 shows whole commands
 say = @$(if $(V),,echo "  $(1)  $@";)
 run = $(if $(V),,@)

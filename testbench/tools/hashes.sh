@@ -1,0 +1,26 @@
+#!/bin/sh
+# hashes.sh "COMPILER OPT"...: builds hash_pipes with each and compares what every instruction set computes with
+# vectors/hashes.txt. Ends with 'N passed, N failed'. An aarch64 compiler's program runs under qemu, on fewer pairs.
+. testbench/support/check.sh
+
+# hash BUILD COMPILER COUNT RUNNER... : one check for each instruction set of that build
+hash() {
+    build=$1 compiler=$2 count=$3
+    shift 3
+    grep -E "^[a-z-]+ [a-z]+ [0-9]+ $count " vectors/hashes.txt >"$build/expected"
+    check "$compiler: there are hashes of $count pairs" test -s "$build/expected"
+    for isa in scalar $("$@" "$build/hash_pipes" --isas); do
+        check "$compiler: $isa" sh -c "$* '$build/hash_pipes' --count $count $isa 2>/dev/null | cmp - '$build/expected'"
+    done
+}
+
+for compiler in "$@"; do
+    build=build/hashes-$(echo "$compiler" | tr ' ' '-')
+    check "build with $compiler" make BUILD="$build" CC="${compiler% *}" OPT="${compiler#* }" hash_pipes
+    case $compiler in
+    aarch64*) hash "$build" "$compiler" 500000 qemu-aarch64 -L /usr/aarch64-linux-gnu ;;
+    *-O0) hash "$build" "$compiler" 500000 env ;;
+    *) hash "$build" "$compiler" 12000000 env ;;
+    esac
+done
+report
