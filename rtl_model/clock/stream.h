@@ -69,6 +69,7 @@ typedef struct hp_stream {
     uint64_t *sram;   /* records held */
     uint64_t written; /* records of this query written */
     uint64_t known;   /* of them in packets the link knows of */
+    bool loose;       /* reading is too broken up for lockstep */
     uint64_t run;     /* tests run */
 } hp_stream;
 

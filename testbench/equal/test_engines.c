@@ -10,15 +10,16 @@
 /* cmocka wants its headers first */
 #include <cmocka.h>
 
-enum { RUNS = 1200, SCENE = 48, PACKET = 40 };
+enum { RUNS = 1200, SHORT = 40, LONG = 1500, PACKET = 40 };
 
 typedef struct work {
     hpt_random random;
     hp_config config;
     hpt_script script;
     unsigned in_flight;
+    unsigned scene;   /* most secondaries in it */
     unsigned present; /* secondaries of the scene */
-    float triangles[SCENE * HP_TRIANGLE_WORDS], rays[PACKET * HP_RAY_WORDS];
+    float triangles[LONG * HP_TRIANGLE_WORDS], rays[PACKET * HP_RAY_WORDS];
 } work;
 
 static uint64_t below(work *w, uint64_t n) {
@@ -33,7 +34,7 @@ static uint64_t pick(work *w, uint64_t a, uint64_t b, uint64_t c) {
 
 static void random_memory(work *w) {
     hp_config *c = &w->config;
-    c->ddr_bytes = 36 * pick(w, 2 * SCENE, 2 * SCENE, 40);
+    c->ddr_bytes = 36 * pick(w, 2 * LONG, 2 * LONG, 40);
     c->ddr_row_beats = pick(w, 1 + below(w, 4), 5 + below(w, 20), 512);
     c->ddr_row_clocks = pick(w, 0, 1 + below(w, 8), 20);
     c->ddr_latency = pick(w, 0, 1 + below(w, 6), 40);
@@ -68,7 +69,7 @@ static void add_scene(work *w) {
     w->present = 0;
     for (unsigned i = 0; i < parts; i++) {
         unsigned first = i ? (unsigned)below(w, w->present + 1) : 0;
-        unsigned count = (unsigned)below(w, (SCENE < 40 ? SCENE : 40) - first + 1);
+        unsigned count = (unsigned)below(w, w->scene - first + 1);
         hpt_upload(&w->script, HP_TRIANGLE, first, count, w->triangles + (size_t)first * HP_TRIANGLE_WORDS);
         if (i == 0 || first + count > w->present) w->present = first + count;
     }
@@ -156,8 +157,9 @@ static work *random_work(uint64_t seed) {
     work *w = calloc(1, sizeof *w);
     assert_non_null(w);
     w->random = hpt_random_seed(seed);
+    w->scene = below(w, 24) ? SHORT : LONG; /* long: what is steady is taken in large steps */
     random_config(w);
-    hpt_triangles(hpt_random_bits(&w->random), SCENE, below(w, 2) ? 1.0f : 3.0f, w->triangles);
+    hpt_triangles(hpt_random_bits(&w->random), LONG, below(w, 2) ? 1.0f : 3.0f, w->triangles);
     hpt_rays(hpt_random_bits(&w->random), PACKET, w->rays);
     if (below(w, 8)) hpt_hello(&w->script);
     add_scene(w);
