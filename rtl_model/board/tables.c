@@ -6,8 +6,9 @@
 
 const char *hp_status_name(hp_status status) {
     switch (status) {
-#define HP_STATUS(NAME, code, exit, text, cause)                                                                       \
-    case HP_##NAME: return "HP_" #NAME;
+#define HP_STATUS(NAME, code, exit, text, cause)                                                                     \
+    case HP_##NAME:                                                                                                  \
+        return "HP_" #NAME;
 #include <hitpipe/status.def>
 #undef HP_STATUS
     }
@@ -16,8 +17,9 @@ const char *hp_status_name(hp_status status) {
 
 const char *hp_status_text(hp_status status) {
     switch (status) {
-#define HP_STATUS(NAME, code, exit, text, cause)                                                                       \
-    case HP_##NAME: return text;
+#define HP_STATUS(NAME, code, exit, text, cause)                                                                     \
+    case HP_##NAME:                                                                                                  \
+        return text;
 #include <hitpipe/status.def>
 #undef HP_STATUS
     }
@@ -26,8 +28,9 @@ const char *hp_status_text(hp_status status) {
 
 const char *hp_status_cause(hp_status status) {
     switch (status) {
-#define HP_STATUS(NAME, code, exit, text, cause)                                                                       \
-    case HP_##NAME: return cause;
+#define HP_STATUS(NAME, code, exit, text, cause)                                                                     \
+    case HP_##NAME:                                                                                                  \
+        return cause;
 #include <hitpipe/status.def>
 #undef HP_STATUS
     }
@@ -36,8 +39,9 @@ const char *hp_status_cause(hp_status status) {
 
 int hp_status_exit(hp_status status) {
     switch (status) {
-#define HP_STATUS(NAME, code, exit, text, cause)                                                                       \
-    case HP_##NAME: return exit;
+#define HP_STATUS(NAME, code, exit, text, cause)                                                                     \
+    case HP_##NAME:                                                                                                  \
+        return exit;
 #include <hitpipe/status.def>
 #undef HP_STATUS
     }
@@ -46,8 +50,9 @@ int hp_status_exit(hp_status status) {
 
 const char *hp_object_name(hp_object object) {
     switch (object) {
-#define HP_OBJECT(name, NAME, code, words, layout)                                                                     \
-    case HP_##NAME: return #name;
+#define HP_OBJECT(name, NAME, code, words, layout)                                                                   \
+    case HP_##NAME:                                                                                                  \
+        return #name;
 #include <hitpipe/objects.def>
 #undef HP_OBJECT
     }
@@ -56,8 +61,9 @@ const char *hp_object_name(hp_object object) {
 
 unsigned hp_object_words(hp_object object) {
     switch (object) {
-#define HP_OBJECT(name, NAME, code, words, layout)                                                                     \
-    case HP_##NAME: return words;
+#define HP_OBJECT(name, NAME, code, words, layout)                                                                   \
+    case HP_##NAME:                                                                                                  \
+        return words;
 #include <hitpipe/objects.def>
 #undef HP_OBJECT
     }
@@ -70,8 +76,9 @@ unsigned hp_object_beats(hp_object object) {
 
 const char *hp_pair_name(hp_pair pair) {
     switch (pair) {
-#define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, prepared)                                                 \
-    case HP_PAIR_##NAME: return typed;
+#define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, prepared)                                               \
+    case HP_PAIR_##NAME:                                                                                             \
+        return typed;
 #include <hitpipe/pairs.def>
 #undef HP_PAIR
     }
@@ -80,8 +87,9 @@ const char *hp_pair_name(hp_pair pair) {
 
 hp_object hp_pair_primary(hp_pair pair) {
     switch (pair) {
-#define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, prepared)                                                 \
-    case HP_PAIR_##NAME: return HP_##PRIMARY;
+#define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, prepared)                                               \
+    case HP_PAIR_##NAME:                                                                                             \
+        return HP_##PRIMARY;
 #include <hitpipe/pairs.def>
 #undef HP_PAIR
     }
@@ -90,8 +98,9 @@ hp_object hp_pair_primary(hp_pair pair) {
 
 hp_object hp_pair_secondary(hp_pair pair) {
     switch (pair) {
-#define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, prepared)                                                 \
-    case HP_PAIR_##NAME: return HP_##SECONDARY;
+#define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, prepared)                                               \
+    case HP_PAIR_##NAME:                                                                                             \
+        return HP_##SECONDARY;
 #include <hitpipe/pairs.def>
 #undef HP_PAIR
     }
@@ -99,7 +108,7 @@ hp_object hp_pair_secondary(hp_pair pair) {
 }
 
 hp_pair hp_pair_from_name(const char *name) {
-#define HP_PAIR(lower, NAME, code, typed, PRIMARY, SECONDARY, prepared)                                                \
+#define HP_PAIR(lower, NAME, code, typed, PRIMARY, SECONDARY, prepared)                                              \
     if (strcmp(name, typed) == 0) return HP_PAIR_##NAME;
 #include <hitpipe/pairs.def>
 #undef HP_PAIR
@@ -108,8 +117,9 @@ hp_pair hp_pair_from_name(const char *name) {
 
 const char *hp_mode_name(hp_mode mode) {
     switch (mode) {
-#define HP_MODE(name, NAME, code, meaning)                                                                             \
-    case HP_MODE_##NAME: return #name;
+#define HP_MODE(name, NAME, code, meaning)                                                                           \
+    case HP_MODE_##NAME:                                                                                             \
+        return #name;
 #include <hitpipe/modes.def>
 #undef HP_MODE
     }
@@ -117,7 +127,7 @@ const char *hp_mode_name(hp_mode mode) {
 }
 
 hp_mode hp_mode_from_name(const char *name) {
-#define HP_MODE(lower, NAME, code, meaning)                                                                            \
+#define HP_MODE(lower, NAME, code, meaning)                                                                          \
     if (strcmp(name, #lower) == 0) return HP_MODE_##NAME;
 #include <hitpipe/modes.def>
 #undef HP_MODE
@@ -142,9 +152,12 @@ const char *hp_object_fault(hp_object object, const float *words) {
         if (isinf(words[i])) return "holds an infinity";
     }
     switch (object) {
-    case HP_RAY: return all_zero(words + 3, 3) ? "direction is zero" : NULL;
-    case HP_TRIANGLE: return NULL;
-    case HP_SPHERE: return any_negative(words + 3, 1) ? "radius is negative" : NULL;
+    case HP_RAY:
+        return all_zero(words + 3, 3) ? "direction is zero" : NULL;
+    case HP_TRIANGLE:
+        return NULL;
+    case HP_SPHERE:
+        return any_negative(words + 3, 1) ? "radius is negative" : NULL;
     case HP_AABB:
         for (unsigned i = 0; i < 3; i++)
             if (words[i] > words[i + 3]) return "min is greater than max";
@@ -158,7 +171,8 @@ const char *hp_object_fault(hp_object object, const float *words) {
         if (any_negative(words + 6, 1)) return "radius is negative";
         return words[0] == words[3] && words[1] == words[4] && words[2] == words[5] ? "p0 and p1 are the same point"
                                                                                     : NULL;
-    case HP_PLANE: return all_zero(words, 3) ? "normal is zero" : NULL;
+    case HP_PLANE:
+        return all_zero(words, 3) ? "normal is zero" : NULL;
     }
     return "is of no known type";
 }
@@ -171,10 +185,15 @@ static const struct {
 #undef HP_REGISTER
 };
 
-_Static_assert(sizeof(hp_counters) == 8 * HP_REGISTER_COUNT, "a register is 64 bits and the struct holds nothing else");
+_Static_assert(sizeof(hp_counters) == 8 * HP_REGISTER_COUNT,
+               "a register is 64 bits and the struct holds nothing else");
 
-const char *hp_register_name(unsigned i) { return i < HP_REGISTER_COUNT ? registers[i].name : NULL; }
-const char *hp_register_meaning(unsigned i) { return i < HP_REGISTER_COUNT ? registers[i].meaning : NULL; }
+const char *hp_register_name(unsigned i) {
+    return i < HP_REGISTER_COUNT ? registers[i].name : NULL;
+}
+const char *hp_register_meaning(unsigned i) {
+    return i < HP_REGISTER_COUNT ? registers[i].meaning : NULL;
+}
 
 uint64_t hp_register_value(const hp_counters *counters, unsigned i) {
     uint64_t value = 0;

@@ -671,7 +671,7 @@ static void take_lockstep(hp_stream *st, uint64_t t, const lockstep *to, hp_coun
 
 static uint64_t lockstep_run(hp_stream *st, uint64_t t, uint64_t to, hp_ddr_runs *ddr, hp_counters *counters) {
     enum { RUNS_MOST = 64 }; /* without a long one: this memory is not worth it */
-    uint64_t whole = (st->latency > st->read_clocks ? st->latency : st->read_clocks) + 1;
+    uint64_t whole = st->read_clocks + st->latency + 1;
     if (!in_lockstep(st, t) || to - t < whole) return t;
     lockstep now = {.ddr = *ddr, .clock = t, .beat = st->read_beat, .sweep = st->read_sweep}, last = now;
     for (unsigned runs = 0; now.clock < to && now.sweep < st->sweeps && runs < RUNS_MOST; runs++) {

@@ -207,6 +207,7 @@ void hpt_triangles(uint64_t seed, unsigned n, float size, float *triangles) {
     for (unsigned i = 0; i < n; i++, triangles += HP_TRIANGLE_WORDS) {
         for (unsigned k = 0; k < HP_TRIANGLE_WORDS; k++)
             triangles[k] = (float)hpt_random_between(&random, -size, size);
+        if (i % 8 == 5) memcpy(triangles, triangles - HP_TRIANGLE_WORDS, 4 * HP_TRIANGLE_WORDS);
         if (i % 16 == 11) memcpy(triangles + 6, triangles, 12);
         if (i % 32 == 21) triangles[4] = NAN;
         if (i % 32 == 22) triangles[0] = INFINITY;

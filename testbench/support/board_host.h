@@ -79,7 +79,8 @@ hp_result *hpt_records(const hpt_log *log, uint32_t tag, size_t *n);
 /* clocks.total = clocks.issue + all stalls = all phases. */
 bool hpt_clocks_add_up(const hp_counters *counters);
 
-/* n rays towards, n triangles in, a cube of this half size around the origin; some degenerate. */
+/* n rays towards, n triangles in, a cube of this half size around the origin; some degenerate, some the same as
+ * the one before. */
 void hpt_rays(uint64_t seed, unsigned n, float *rays);
 void hpt_triangles(uint64_t seed, unsigned n, float size, float *triangles);
 

@@ -9,8 +9,8 @@
  *     hp_close(device);
  *
  * Units: T of a ray pair counts lengths of the ray's own direction; every other length is in the units of the input.
- * Threads: a device is used by one thread at a time; different devices are independent. The library starts threads only
- * for the simulated board's arithmetic (hp_device_def.threads), prints nothing and keeps no global state.
+ * Threads: a device is used by one thread at a time; different devices are independent. The library starts threads
+ * only for the simulated board's arithmetic (hp_device_def.threads), prints nothing and keeps no global state.
  * Errors: every call returns an hp_status (status.def: each with its cause); hp_error_message says place and cause in
  * words. After any error but HP_ERROR_DISCONNECTED the device can be used again. */
 #ifndef HITPIPE_HITPIPE_H
@@ -28,27 +28,27 @@ extern "C" {
 
 typedef struct hp_device hp_device;
 
-/* Called during long calls, from the calling thread, at most some tens of times a second: `done` of `total` units (bytes
- * of an upload, primaries or records of a query). Returning false stops the call with HP_ERROR_CANCELLED. */
+/* Called during long calls, from the calling thread, at most some tens of times a second: `done` of `total` units
+ * (bytes of an upload, primaries or records of a query). Returning false stops the call with HP_ERROR_CANCELLED. */
 typedef bool hp_progress(void *context, uint64_t done, uint64_t total);
 
 /* How to open a device. Always begin with hp_default_device_def. */
 typedef struct hp_device_def {
-    uint32_t cookie;         /* set by hp_default_device_def: a def without it is refused with HP_ERROR_USAGE */
-    const char *target;      /* "model" (default) or "null" */
-    hp_config board;         /* model: the board to simulate; default the preset "usb3" */
-    bool clocked;            /* model: the clocked engine instead of the quick one; same answers, same counts */
-    const char *isa;         /* model: "avx512", "avx2", "sse2", "neon", "plain"; NULL: environment HP_ISA or the best */
-    unsigned threads;        /* model: threads of the arithmetic; 0: one per processor */
+    uint32_t cookie;    /* set by hp_default_device_def: a def without it is refused with HP_ERROR_USAGE */
+    const char *target; /* "model" (default) or "null" */
+    hp_config board;    /* model: the board to simulate; default the preset "usb3" */
+    bool clocked;       /* model: the clocked engine instead of the quick one; same answers, same counts */
+    const char *isa;    /* model: "avx512", "avx2", "sse2", "neon", "plain"; NULL: environment HP_ISA or the best */
+    unsigned threads;   /* model: threads of the arithmetic; 0: one per processor */
     void (*vcd)(void *context, const char *text, size_t n); /* model, clocked: takes the waveform; NULL: none */
     void *vcd_context;
-    unsigned timeout_ms;     /* longest wait for one answer; default 10000 */
-    unsigned retries;        /* how often a damaged or lost packet is sent again; default 3 */
-    bool unchecked;          /* send objects and matrices as they are, NaN, infinities and zero directions too, which
-                              * hp_upload, hp_transform and hp_query refuse otherwise: for bring-up and replay of golden
-                              * vectors. A board answers F 0 to such a pair. Default false */
-    unsigned in_flight;      /* most packets under way; 0: as many as the board gives credits for */
-    hp_progress *progress;   /* NULL: none */
+    unsigned timeout_ms;   /* longest wait for one answer; default 10000 */
+    unsigned retries;      /* how often a damaged or lost packet is sent again; default 3 */
+    bool unchecked;        /* send objects and matrices as they are, NaN, infinities and zero directions too, which
+                            * hp_upload, hp_transform and hp_query refuse otherwise: for bring-up and replay of golden
+                            * vectors. A board answers F 0 to such a pair. Default false */
+    unsigned in_flight;    /* most packets under way; 0: as many as the board gives credits for */
+    hp_progress *progress; /* NULL: none */
     void *progress_context;
 } hp_device_def;
 
@@ -76,11 +76,10 @@ typedef struct hp_identity {
 } hp_identity;
 const hp_identity *hp_identify(const hp_device *device);
 
-/* Makes `count` objects, hp_object_words(object) floats each, the resident secondaries, numbered from 0. `words` is only
- * read, and not kept. Waits until the board has them all.
- * HP_ERROR_INPUT: an object that hp_object_fault refuses, the message names its index, nothing is sent and the old scene
- * stays. HP_ERROR_CAPACITY: more than the board's DDR holds; the old scene stays. Link errors: the scene is undefined
- * until the next upload that succeeds. */
+/* Makes `count` objects, hp_object_words(object) floats each, the resident secondaries, numbered from 0. `words` is
+ * only read, and not kept. Waits until the board has them all. HP_ERROR_INPUT: an object that hp_object_fault
+ * refuses, the message names its index, nothing is sent and the old scene stays. HP_ERROR_CAPACITY: more than the
+ * board's DDR holds; the old scene stays. Link errors: the scene is undefined until the next upload that succeeds. */
 hp_status hp_upload(hp_device *device, hp_object object, const float *words, size_t count);
 
 /* Sets the transformer: secondaries are moved by the 3x4 row-major matrix in all later queries. NULL: not moved.
@@ -90,23 +89,23 @@ hp_status hp_transform(hp_device *device, const float matrix[12]);
 /* What to ask. Always begin with hp_default_query_def. */
 typedef struct hp_query_def {
     uint32_t cookie;
-    hp_pair pair;           /* default HP_PAIR_RAY_TRIANGLE */
-    hp_mode mode;           /* default HP_MODE_CLOSEST */
-    size_t first, count;    /* which secondaries; count 0: all from `first` on (mode zip: one a primary) */
+    hp_pair pair;            /* default HP_PAIR_RAY_TRIANGLE */
+    hp_mode mode;            /* default HP_MODE_CLOSEST */
+    size_t first, count;     /* which secondaries; count 0: all from `first` on (mode zip: one a primary) */
     const uint32_t *stencil; /* bit i%32 of word i/32: primary i takes part; NULL: all do */
-    size_t packet;          /* primaries in a packet; 0: as many as the board takes */
+    size_t packet;           /* primaries in a packet; 0: as many as the board takes */
 } hp_query_def;
 hp_query_def hp_default_query_def(void);
 
-/* Asks for n primaries, hp_object_words(hp_pair_primary(pair)) floats each, in modes closest, any and zip. Splits them
- * into packets and keeps several under way. results[i] answers primary i; a primary that the stencil masks gets a miss
- * with stencil 0. `results` is written only for primaries whose answer came; on error, the message says how many.
- * HP_ERROR_INPUT (message names the primary), HP_ERROR_USAGE (mode all), HP_ERROR_CAPACITY (secondaries past the scene),
- * HP_ERROR_NOT_RESIDENT, HP_ERROR_CANCELLED, link errors after the retries. */
+/* Asks for n primaries, hp_object_words(hp_pair_primary(pair)) floats each, in modes closest, any and zip. Splits
+ * them into packets and keeps several under way. results[i] answers primary i; a primary that the stencil masks gets
+ * a miss with stencil 0. `results` is written only for primaries whose answer came; on error, the message says how
+ * many. HP_ERROR_INPUT (message names the primary), HP_ERROR_USAGE (mode all), HP_ERROR_CAPACITY (secondaries past
+ * the scene), HP_ERROR_NOT_RESIDENT, HP_ERROR_CANCELLED, link errors after the retries. */
 hp_status hp_query(hp_device *device, const hp_query_def *def, const float *primaries, size_t n, hp_result *results);
 
-/* Takes `count` records of mode all: record i answers primary primary[i] with secondary secondary[i]. The arrays live for
- * the call. Returning false stops the query with HP_ERROR_CANCELLED. */
+/* Takes `count` records of mode all: record i answers primary primary[i] with secondary secondary[i]. The arrays live
+ * for the call. Returning false stops the query with HP_ERROR_CANCELLED. */
 typedef bool hp_records_taker(void *context, const uint32_t *primary, const uint32_t *secondary,
                               const hp_result *records, size_t count);
 
@@ -115,7 +114,8 @@ typedef bool hp_records_taker(void *context, const uint32_t *primary, const uint
 hp_status hp_query_all(hp_device *device, const hp_query_def *def, const float *primaries, size_t n,
                        hp_records_taker *take, void *context);
 
-/* Reads the board's counter registers, and sets them to 0 if `clear`. Counts are those before this call's own answer. */
+/* Reads the board's counter registers, and sets them to 0 if `clear`. Counts are those before this call's own answer.
+ */
 hp_status hp_read_counters(hp_device *device, bool clear, hp_counters *counters);
 
 /* Words on the last error of this device, with its place: "primary 17: direction is zero". Empty when there was none.

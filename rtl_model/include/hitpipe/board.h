@@ -21,9 +21,9 @@ typedef void hp_vcd_sink(void *context, const char *text, size_t n);
 typedef struct hp_board_def {
     hp_config config;
     hp_engine_kind engine;
-    const char *isa;    /* as hp_isa_choose; NULL: HP_ISA or the best */
-    unsigned threads;   /* of the quick engine's arithmetic; 0: as many as there are processors */
-    hp_vcd_sink *vcd;   /* clocked engine only; NULL: no waveform */
+    const char *isa;  /* as hp_isa_choose; NULL: HP_ISA or the best */
+    unsigned threads; /* of the quick engine's arithmetic; 0: as many as there are processors */
+    hp_vcd_sink *vcd; /* clocked engine only; NULL: no waveform */
     void *vcd_context;
 } hp_board_def;
 
@@ -40,16 +40,19 @@ typedef struct hp_board_event {
     size_t n;
 } hp_board_event;
 
-/* A board in reset. HP_ERROR_CONFIG, HP_ERROR_MEMORY, HP_ERROR_USAGE (an ISA not to be had, vcd with the quick engine). */
+/* A board in reset. HP_ERROR_CONFIG, HP_ERROR_MEMORY, HP_ERROR_USAGE (an ISA not to be had, vcd with the quick
+ * engine). */
 hp_status hp_board_create(const hp_board_def *def, hp_board **board);
 void hp_board_destroy(hp_board *board);
 
-/* Hands one transfer (any bytes, normally a packet) to the link at the board's present clock. The bytes stay the caller's
- * and must not change until HP_BOARD_RECEIVED. Transfers cross in order. HP_ERROR_MEMORY when no more can be queued. */
+/* Hands one transfer (any bytes, normally a packet) to the link at the board's present clock. The bytes stay the
+ * caller's and must not change until HP_BOARD_RECEIVED. Transfers cross in order. HP_ERROR_MEMORY when no more can be
+ * queued. */
 hp_status hp_board_send(hp_board *board, const void *bytes, size_t n);
 
 /* Lets time pass to the next event on the link, and says which. Events come in clock order; of several in one clock,
- * HP_BOARD_SENT first. The host is taken to be infinitely fast: what it sends after an event is sent in that clock. */
+ * HP_BOARD_SENT first. The host is taken to be infinitely fast: what it sends after an event is sent in that clock.
+ */
 hp_board_event hp_board_step(hp_board *board);
 
 /* Present counters, and ISA and engine in use ("avx512", "quick"). */

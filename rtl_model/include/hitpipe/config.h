@@ -1,6 +1,7 @@
 /* A board configuration: every knob of config.def as a struct field, presets, and setting by key.
  *
- * A plain value: copy it freely. The functions keep no state and may be called from any thread on different structs. */
+ * A plain value: copy it freely. The functions keep no state and may be called from any thread on different structs.
+ */
 #ifndef HITPIPE_CONFIG_H
 #define HITPIPE_CONFIG_H
 
@@ -10,8 +11,8 @@
 extern "C" {
 #endif
 
-/* Operators of a datapath. The first seven have a latency of their own in the operator table; AND, OR are gates in the
- * shadow of a comparator and NEG, ABS are wires: none of them takes a clock. MIN and MAX are a comparator and a
+/* Operators of a datapath. The first seven have a latency of their own in the operator table; AND, OR are gates in
+ * the shadow of a comparator and NEG, ABS are wires: none of them takes a clock. MIN and MAX are a comparator and a
  * multiplexer. */
 typedef enum hp_operator {
     HP_OP_ADD,
@@ -45,7 +46,8 @@ typedef struct hp_config {
 
 #define HP_CONFIG_MESSAGE 256 /* bytes that always suffice for a message below */
 
-/* The preset of that name ("usb3", "wscg2007", "ideal"). HP_ERROR_CONFIG for another name; *config stays untouched. */
+/* The preset of that name ("usb3", "wscg2007", "ideal"). HP_ERROR_CONFIG for another name; *config stays untouched.
+ */
 hp_status hp_config_preset(hp_config *config, const char *name);
 
 /* Name of preset number i, or NULL past the last. */
@@ -53,13 +55,16 @@ const char *hp_config_preset_name(unsigned i);
 
 /* Sets one knob from text: a decimal whole number, or one of the words of a choice; "name" takes any text under 32
  * bytes and "pipes" a list of pair names with commas between, or "all". HP_ERROR_CONFIG for an unknown key or a value
- * out of range: `message` (HP_CONFIG_MESSAGE bytes) then names the key and what it allows, *config stays untouched. */
+ * out of range: `message` (HP_CONFIG_MESSAGE bytes) then names the key and what it allows, *config stays untouched.
+ */
 hp_status hp_config_set(hp_config *config, const char *key, const char *value, char *message);
 
-/* The value of a knob as hp_config_set takes it. Writes at most `room` bytes, always terminated. False: no such key. */
+/* The value of a knob as hp_config_set takes it. Writes at most `room` bytes, always terminated. False: no such key.
+ */
 bool hp_config_get(const hp_config *config, const char *key, char *text, size_t room);
 
-/* Key number i of config.def ("name" and "pipes" come first), or NULL past the last; its meaning and range in words. */
+/* Key number i of config.def ("name" and "pipes" come first), or NULL past the last; its meaning and range in words.
+ */
 const char *hp_config_key(unsigned i);
 const char *hp_config_meaning(unsigned i);
 void hp_config_range(unsigned i, char *text, size_t room);

@@ -33,9 +33,9 @@ enum {
 #include <hitpipe/objects.def>
 #undef HP_OBJECT
     HP_OBJECT_WORDS_MAX = 15,
-    HP_BEAT_WORDS = 9,       /* words the secondary bus carries in a clock: 288 bits */
+    HP_BEAT_WORDS = 9,         /* words the secondary bus carries in a clock: 288 bits */
     HP_PACKET_PRIMARIES = 256, /* most primaries in a packet */
-    HP_RESULT_WORDS = 7      /* F, index, T, CP xyz, stencil */
+    HP_RESULT_WORDS = 7        /* F, index, T, CP xyz, stencil */
 };
 
 /* Pairs of object types, primary first: one pipe each. */
@@ -55,8 +55,8 @@ typedef enum hp_mode {
 /* The order of the two loops of a query (knob loop_order). */
 typedef enum hp_loop_order { HP_PRIMARY_OUTER = 0, HP_SECONDARY_OUTER = 1 } hp_loop_order;
 
-/* Underflow (knob subnormals). HP_FLUSH: operands and results that are subnormal become zero of their sign; a result is
- * subnormal when, rounded to 24 bits as if the exponent had no bounds, it is below 2^-126. */
+/* Underflow (knob subnormals). HP_FLUSH: operands and results that are subnormal become zero of their sign; a result
+ * is subnormal when, rounded to 24 bits as if the exponent had no bounds, it is below 2^-126. */
 typedef enum hp_subnormals { HP_GRADUAL = 0, HP_FLUSH = 1 } hp_subnormals;
 
 #define HP_NO_INDEX 0xFFFFFFFFu /* index of a miss */
