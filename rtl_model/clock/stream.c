@@ -1,22 +1,6 @@
-#include "stream.h"
+#include "stream_parts.h"
 #include <stdlib.h>
 #include <string.h>
-
-/* What the selector does in a run. */
-typedef enum selector_state {
-    SELECTOR_ISSUE,
-    SELECTOR_WAIT,
-    SELECTOR_INTERVAL,
-    SELECTOR_HELD,
-    SELECTOR_DRAIN
-} selector_state;
-
-typedef struct stream_run {
-    uint64_t clocks;
-    selector_state selector;
-    hp_ddr_state ddr;
-    bool moves, writes, full;
-} stream_run;
 
 static void shorten(stream_run *run, uint64_t clocks) {
     if (clocks < run->clocks) run->clocks = clocks;
@@ -89,11 +73,6 @@ void hp_stream_begin(hp_stream *st, hp_query *query, const uint32_t *hit, hp_str
 
 /* ---- secondary register file ---- */
 
-static hp_object_run *objects_at(hp_stream *st, uint64_t i) {
-    uint64_t at = st->objects_head + i, room = st->config->secondary_depth + 1;
-    return &st->objects[at < room ? at : at - room];
-}
-
 static void push_objects(hp_stream *st, hp_object_run run) {
     if (st->objects_count && !run.refresh && !run.row) {
         hp_object_run *last = objects_at(st, st->objects_count - 1);
@@ -121,15 +100,6 @@ static void pop_objects(hp_stream *st, uint64_t n) {
 }
 
 /* ---- reader ---- */
-
-static bool reads_left(const hp_stream *st) {
-    return st->read_sweep < st->sweeps;
-}
-
-static uint64_t read_address(const hp_stream *st) {
-    uint64_t first = hp_query_secondary(st->query, st->read_sweep, 0);
-    return first * st->beats + st->read_beat;
-}
 
 /* Beats in a row that the reader wants while the selector does what `run` says. */
 static uint64_t beats_wanted(const hp_stream *st, const stream_run *run) {
@@ -232,7 +202,7 @@ static void bound_selector(hp_stream *st, uint64_t t, stream_run *run) {
     }
 }
 
-static void push_tests(hp_stream *st, uint64_t exit, uint64_t tests, unsigned records) {
+void hp_stream_push_tests(hp_stream *st, uint64_t exit, uint64_t tests, unsigned records) {
     if (st->tests_count) {
         uint64_t at = (st->tests_head + st->tests_count - 1) % st->tests_room;
         hp_test_run *last = &st->tests[at];
@@ -283,10 +253,10 @@ static void push_issues(hp_stream *st, uint64_t exit, uint64_t n) {
     unsigned last = st->secondary_outer ? st->order[st->group + n - 1] : st->group;
     unsigned records = st->records_tests ? st->alive[last] : 0;
     if (st->records_tests && n > 1 && st->secondary_outer) {
-        push_tests(st, exit, n - 1, st->lanes);
-        push_tests(st, exit + n - 1, 1, records);
+        hp_stream_push_tests(st, exit, n - 1, st->lanes);
+        hp_stream_push_tests(st, exit + n - 1, 1, records);
     } else {
-        push_tests(st, exit, n, records);
+        hp_stream_push_tests(st, exit, n, records);
     }
 }
 
@@ -414,7 +384,7 @@ static void write_records(hp_stream *st, uint64_t n, hp_counters *counters) {
 
 /* Everything behind the selector. Tests are in the output register after the move before their exit: in the clocks of
  * move `exit` they are the update engine's or the register's. */
-static void move_pipe(hp_stream *st, const stream_run *run, hp_counters *counters) {
+void hp_stream_move_pipe(hp_stream *st, const stream_run *run, hp_counters *counters) {
     uint64_t n = run->clocks, inside = st->exit > st->moves ? st->exit - st->moves : 0;
     unsigned records;
     counters->clocks_pipe += run->moves ? hp_min(n, inside) : inside ? n : 0;
@@ -464,234 +434,15 @@ static uint64_t test_run(hp_stream *st, uint64_t t, uint64_t to, hp_ddr_runs *dd
     count_stalls(&run, counters);
     if (run.ddr == HP_DDR_BEAT) read_beats(st, t, n, counters);
     if (run.selector == SELECTOR_ISSUE) issue(st, t, n, counters);
-    move_pipe(st, &run, counters);
+    hp_stream_move_pipe(st, &run, counters);
     if (st->stops_count) stop_primaries(st, t + n - 1);
     if (st->over && !st->tests_count && !st->output) st->phase = st->records_tests ? HP_STREAM_END : HP_STREAM_FLUSH;
     return t + n;
 }
 
-/* ---- steady issuing: what nearly all clocks of a secondary-outer query are like ----
- *
- * The register file is full, so an object is read for each one released, and every object is ready long before its
- * turn: the selector never waits. Each object takes a window of one clock a group, in which the controller reads its
- * successor and does what else is due. */
-
-typedef struct window {
-    uint64_t clocks, beats;
-    uint64_t refresh, row;           /* clocks counted in all windows */
-    uint64_t held_refresh, held_row; /* since the last object was read */
-} window;
-
-/* Objects from clock t on, one a window, that are certain to be ready: the entries now in the file, and all that will
- * be read into it. */
-static bool ready_in_time(hp_stream *st, uint64_t t, uint64_t clocks) {
-    if (st->beats > clocks || st->read_clocks - 1 > (st->config->secondary_depth - 2) * clocks) return false;
-    uint64_t turn = t;
-    for (uint64_t i = 0; i < st->objects_count; i++) {
-        const hp_object_run *run = objects_at(st, i);
-        if (run->ready > turn) return false;
-        turn += run->objects * clocks;
-    }
-    return true;
-}
-
-/* Windows to be taken from clock t on; 0: none. */
-static uint64_t steady_windows(hp_stream *st, uint64_t t, uint64_t to) {
-    if (!st->secondary_outer || st->records_tests || st->interval > 1 || st->group || st->over || st->stops_count)
-        return 0;
-    if (!reads_left(st) || st->outstanding + 1 != st->config->secondary_depth || st->read_beat % st->beats) return 0;
-    if (t < st->issue_from) return 0;
-    uint64_t n = hp_min((to - t) / st->groups, st->per_sweep - st->read_beat / st->beats);
-    if (st->next_hit < st->hits) n = hp_min(n, st->hit[st->by_hit[st->next_hit]] - st->object);
-    return n > 1 && ready_in_time(st, t, st->groups) ? n : 0;
-}
-
-/* The common window: the object is read at once, or after its row was opened, and at most one refresh follows. */
-static bool plain_window(hp_ddr_runs *ddr, uint64_t t, uint64_t row, window *w) {
-    uint64_t opening = row == ddr->open_row ? 0 : ddr->row_clocks, end = t + w->clocks;
-    if (t < ddr->until || t + opening + w->beats > hp_min(ddr->due, end)) return false;
-    if (ddr->due < end && (ddr->due + ddr->refresh_clocks > end || ddr->due + ddr->interval < end)) return false;
-    ddr->open_row = row;
-    w->row += opening;
-    w->held_refresh = w->held_row = 0;
-    if (ddr->due >= end) return true;
-    ddr->open_row = HP_NO_ROW;
-    ddr->due += ddr->interval;
-    w->refresh += ddr->refresh_clocks;
-    w->held_refresh = ddr->refresh_clocks;
-    return true;
-}
-
-/* Any window. False, and the controller as it was: the object cannot be read within it. */
-static bool crowded_window(hp_ddr_runs *ddr, uint64_t t, uint64_t beat, window *w) {
-    hp_ddr_runs now = *ddr;
-    window counted = *w;
-    uint64_t end = t + w->clocks, left = w->beats;
-    while (t < end) {
-        hp_ddr_run run = hp_ddr_plan(&now, t, beat, left);
-        uint64_t clocks = hp_min(run.clocks, end - t);
-        counted.refresh += run.state == HP_DDR_REFRESH ? clocks : 0;
-        counted.row += run.state == HP_DDR_ROW ? clocks : 0;
-        counted.held_refresh += run.state == HP_DDR_REFRESH ? clocks : 0;
-        counted.held_row += run.state == HP_DDR_ROW ? clocks : 0;
-        if (run.state == HP_DDR_BEAT) {
-            beat += clocks;
-            left -= clocks;
-            if (left == 0) counted.held_refresh = counted.held_row = 0;
-        }
-        t += clocks;
-    }
-    if (left) return false;
-    *ddr = now;
-    *w = counted;
-    return true;
-}
-
-static uint64_t read_in_windows(hp_stream *st, uint64_t t, uint64_t n, hp_ddr_runs *ddr, window *w) {
-    uint64_t beat = read_address(st), row = beat / ddr->row_beats, row_end = (row + 1) * ddr->row_beats, done = 0;
-    for (; done < n; done++, t += w->clocks, beat += w->beats) {
-        if (beat >= row_end) {
-            row = beat / ddr->row_beats;
-            row_end = (row + 1) * ddr->row_beats;
-        }
-        if (beat + w->beats <= row_end && plain_window(ddr, t, row, w)) continue;
-        if (!crowded_window(ddr, t, beat, w)) break;
-    }
-    return done;
-}
-
-/* Takes as many windows as it can; returns the clock after them, t when there was none. */
-static uint64_t steady_run(hp_stream *st, uint64_t t, uint64_t to, hp_ddr_runs *ddr, hp_counters *counters) {
-    uint64_t n = steady_windows(st, t, to);
-    if (n == 0) return t;
-    window w = {.clocks = st->groups, .beats = st->beats, .held_refresh = st->refresh, .held_row = st->row};
-    n = read_in_windows(st, t, n, ddr, &w);
-    if (n == 0) return t;
-    stream_run run = {.clocks = n * st->groups, .moves = true};
-    counters->clocks_ddr_read += n * st->beats;
-    counters->clocks_ddr_refresh += w.refresh;
-    counters->clocks_ddr_row += w.row;
-    counters->clocks_transformer += st->query->moved ? n : 0;
-    counters->clocks_issue += run.clocks;
-    counters->tests_run += n * st->alive_all;
-    st->run += n * st->alive_all;
-    st->refresh = w.held_refresh;
-    st->row = w.held_row;
-    st->read_beat += n * st->beats;
-    if (st->read_beat == st->per_sweep * st->beats) st->read_beat = 0, st->read_sweep++;
-    st->object += n;
-    st->objects_head = 0;
-    st->objects_count = 1;
-    st->objects[0] = (hp_object_run){.ready = 0, .objects = st->outstanding};
-    push_tests(st, st->moves + st->latency, run.clocks, 0);
-    st->exit = st->moves + st->latency + run.clocks - 1;
-    st->issue_from = t + run.clocks;
-    move_pipe(st, &run, counters);
-    return t + run.clocks;
-}
-
-/* ---- lockstep: what nearly all clocks of a primary-outer query are like ----
- *
- * Each object is issued once, read_clocks after it is read: the selector waits as long as the controller does not
- * read, and for the same cause. So the controller's time tells all, up to a clock before which it has read long
- * enough without a gap for register file and pipe to hold nothing else. */
-
-typedef struct lockstep {
-    hp_ddr_runs ddr;
-    uint64_t clock, reads, beat; /* beat: of the present sweep */
-    unsigned sweep;
-    uint64_t refresh, row, empty; /* clocks of refresh, of opening; with no test in the pipe */
-    uint64_t gap, together;       /* clocks without, or with a read, up to the present one */
-} lockstep;
-
-static bool in_lockstep(hp_stream *st, uint64_t t) {
-    if (st->secondary_outer || st->records_tests || st->hit || st->beats > 1 || st->interval > 1 || st->loose)
-        return false;
-    if (st->over || !reads_left(st) || st->read_clocks >= st->config->secondary_depth) return false;
-    if (st->objects_count != 1 || st->refresh || st->row) return false;
-    const hp_object_run *first = objects_at(st, 0);
-    return first->ready == t && first->objects == st->read_clocks && !first->refresh && !first->row;
-}
-
-/* The controller's next run. */
-static void read_on(hp_stream *st, lockstep *now, uint64_t to) {
-    uint64_t address = (uint64_t)st->query->first + now->beat;
-    hp_ddr_run run = hp_ddr_plan(&now->ddr, now->clock, address, st->per_sweep - now->beat);
-    uint64_t n = hp_min(run.clocks, to - now->clock);
-    now->clock += n;
-    if (run.state != HP_DDR_BEAT) {
-        *(run.state == HP_DDR_ROW ? &now->row : &now->refresh) += n;
-        now->gap += n;
-        now->together = 0;
-        return;
-    }
-    if (now->gap + 1 > st->latency) now->empty += now->gap + 1 - st->latency;
-    now->gap = 0;
-    now->together += n;
-    now->reads += n;
-    now->beat += n;
-    if (now->beat < st->per_sweep) return;
-    now->beat = 0;
-    now->sweep++;
-}
-
-/* Tests among the first `issues` of the query. */
-static uint64_t tests_in(const hp_stream *st, uint64_t issues) {
-    uint64_t group = issues / st->per_sweep, in_group = issues % st->per_sweep;
-    uint64_t before = hp_min(group * st->lanes, st->query->active);
-    return before * st->per_sweep + (in_group ? in_group * st->alive[group] : 0);
-}
-
-static void take_lockstep(hp_stream *st, uint64_t t, const lockstep *to, hp_counters *counters) {
-    uint64_t before = st->group * st->per_sweep + st->object, after = before + to->reads;
-    uint64_t tests = tests_in(st, after) - tests_in(st, before), in_pipe = 0;
-    for (uint64_t i = 0; i < st->tests_count; i++) in_pipe += st->tests[(st->tests_head + i) % st->tests_room].tests;
-    counters->clocks_ddr_read += to->reads;
-    counters->clocks_ddr_refresh += to->refresh;
-    counters->clocks_ddr_row += to->row;
-    counters->clocks_transformer += st->query->moved ? to->reads : 0;
-    counters->clocks_issue += to->reads;
-    counters->stalls_refresh += to->refresh;
-    counters->stalls_row += to->row;
-    counters->clocks_pipe += to->clock - t - to->empty;
-    counters->clocks_update += in_pipe + to->reads - st->latency;
-    counters->tests_run += tests;
-    st->run += tests;
-    st->read_sweep = to->sweep;
-    st->read_beat = to->beat;
-    st->group = (unsigned)(after / st->per_sweep);
-    st->object = after % st->per_sweep;
-    st->issue_from = to->clock;
-    st->moves += to->clock - t;
-    st->exit = st->moves + st->latency - 1;
-    st->tests_count = 0;
-    push_tests(st, st->moves, st->latency, 0);
-    objects_at(st, 0)->ready = to->clock;
-}
-
-static uint64_t lockstep_run(hp_stream *st, uint64_t t, uint64_t to, hp_ddr_runs *ddr, hp_counters *counters) {
-    enum { RUNS_MOST = 64 }; /* without a long one: this memory is not worth it */
-    uint64_t whole = st->read_clocks + st->latency + 1;
-    if (!in_lockstep(st, t) || to - t < whole) return t;
-    lockstep now = {.ddr = *ddr, .clock = t, .beat = st->read_beat, .sweep = st->read_sweep}, last = now;
-    for (unsigned runs = 0; now.clock < to && now.sweep < st->sweeps && runs < RUNS_MOST; runs++) {
-        read_on(st, &now, to);
-        if (now.together < whole) continue;
-        last = now;
-        runs = 0;
-    }
-    if (last.clock == t) {
-        st->loose = now.clock < to;
-        return t;
-    }
-    *ddr = last.ddr;
-    take_lockstep(st, t, &last, counters);
-    return last.clock;
-}
-
 static uint64_t tests_run(hp_stream *st, uint64_t t, uint64_t to, hp_ddr_runs *ddr, hp_counters *counters) {
-    uint64_t steady = steady_run(st, t, to, ddr, counters);
-    if (steady == t) steady = lockstep_run(st, t, to, ddr, counters);
+    uint64_t steady = hp_steady_run(st, t, to, ddr, counters);
+    if (steady == t) steady = hp_lockstep_run(st, t, to, ddr, counters);
     return steady > t ? steady : test_run(st, t, to, ddr, counters);
 }
 

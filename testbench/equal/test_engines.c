@@ -236,12 +236,15 @@ static uint64_t run(uint64_t seed) {
     return clocks;
 }
 
+static const uint64_t found[] = {9304}; /* seeds that once told the engines apart */
+
 static uint64_t only; /* seed given on the command line */
 
 static void engines_agree_on_random_boards(void **state) {
     (void)state;
     uint64_t clocks = 0;
     for (uint64_t seed = 1; seed <= RUNS && !only; seed++) clocks += run(seed);
+    for (unsigned i = 0; i < sizeof found / sizeof found[0] && !only; i++) clocks += run(found[i]);
     if (only) run(only);
     assert_true(only || clocks > RUNS * 1000); /* or the boards did next to nothing */
 }
