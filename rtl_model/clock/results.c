@@ -7,7 +7,8 @@
 enum {
     LANES_STEP = 16,         /* primaries of a thread begin at a multiple of this */
     SMALL_WORK = 512 * 1024, /* tests below which a second thread costs more than it saves */
-    TILE = 64                /* secondaries of `all` at a time */
+    THREADS_MAX = 64,
+    TILE = 64 /* secondaries at a time where they lie in the lanes */
 };
 
 static hp_result miss(void) {
@@ -16,52 +17,120 @@ static hp_result miss(void) {
 
 /* ---- closest and any: the wide pipes keep the winner, the scalar pipe answers for it ---- */
 
+/* What a thread tests: primaries [from, to) against `count` secondaries from number `first` of the query on. */
 typedef struct slice {
     const hp_results_job *job;
     const hp_query *query;
+    unsigned from, to;
+    uint32_t first, count;
     hp_best *best;
-    unsigned from, to; /* primaries */
     pthread_t thread;
+    bool started;
 } slice;
 
-static void *test_slice(void *context) {
-    const slice *work = context;
+static const float *secondary_block(const slice *work, uint32_t k) {
+    return hp_ddr_object(work->job->ddr, work->query->secondary, (uint64_t)work->query->first + k);
+}
+
+/* A primary alone would leave most lanes empty: here the lanes are secondaries. */
+static void test_one(const slice *work) {
+    const hp_query *query = work->query;
+    uint32_t F[TILE], *index = &work->best->index[work->from];
+    float T[TILE], CP[3][TILE], *best_T = &work->best->T[work->from];
+    hp_pairs_out out = {F, T, {CP[0], CP[1], CP[2]}};
+    uint32_t end = work->first + work->count;
+    for (uint32_t k = work->first, n; k < end; k += n) {
+        n = end - k < TILE ? end - k : TILE;
+        work->job->pipe->pairs(hp_query_primary(query, work->from), 0, secondary_block(work, k), n,
+                               query->moved ? query->matrix : NULL, work->job->config->subnormals == HP_FLUSH, &out);
+        for (uint32_t i = 0; i < n; i++) {
+            if (!F[i] || T[i] >= *best_T) continue;
+            *best_T = T[i];
+            *index = k + i;
+            if (query->mode == HP_MODE_ANY) return;
+        }
+    }
+}
+
+static void test_blocks(const slice *work) {
     const hp_query *query = work->query;
     const hp_wide_pipe *pipe = work->job->pipe;
     bool flush = work->job->config->subnormals == HP_FLUSH;
     _Alignas(64) float prepared[HP_BLOCK * HP_PREPARED_MAX];
-    for (uint32_t done = 0, n; done < query->count; done += n) {
-        n = query->count - done < HP_BLOCK ? query->count - done : HP_BLOCK;
-        const float *block = hp_ddr_object(work->job->ddr, query->secondary, (uint64_t)query->first + done);
-        pipe->prepare(block, n, query->moved ? query->matrix : NULL, flush, prepared);
-        (query->mode == HP_MODE_ANY ? pipe->any : pipe->closest)(&query->lanes, work->from, work->to, prepared, n,
-                                                                 done, flush, work->best);
+    uint32_t end = work->first + work->count;
+    for (uint32_t k = work->first, n; k < end; k += n) {
+        n = end - k < HP_BLOCK ? end - k : HP_BLOCK;
+        pipe->prepare(secondary_block(work, k), n, query->moved ? query->matrix : NULL, flush, prepared);
+        (query->mode == HP_MODE_ANY ? pipe->any : pipe->closest)(&query->lanes, work->from, work->to, prepared, n, k,
+                                                                 flush, work->best);
     }
+}
+
+static void *test_slice(void *context) {
+    const slice *work = context;
+    if (work->to - work->from == 1)
+        test_one(work);
+    else
+        test_blocks(work);
     return NULL;
 }
 
-/* Ranges of primaries, one a thread; the caller's thread takes the first. A thread that cannot be had does not
- * matter: its range is done here. */
-static void test_all(const hp_results_job *job, const hp_query *query, hp_best *best) {
-    slice slices[HP_PACKET_PRIMARIES / LANES_STEP];
-    unsigned steps = (query->active + LANES_STEP - 1) / LANES_STEP;
-    unsigned threads = (uint64_t)query->count * query->active < SMALL_WORK ? 1 : job->threads;
-    if (threads > steps) threads = steps;
-    for (unsigned i = 0; i < threads; i++) {
+/* The part of a thread. closest: a range of secondaries, so that each is prepared once; any: a range of primaries, so
+ * that none is tested further than to its first hit. */
+static slice slice_of(const hp_results_job *job, const hp_query *query, unsigned i, unsigned threads, hp_best *best) {
+    slice s = {.job = job, .query = query, .to = query->active, .count = query->count, .best = best};
+    if (query->mode == HP_MODE_ANY) {
+        unsigned steps = (query->active + LANES_STEP - 1) / LANES_STEP;
         unsigned to = (i + 1) * steps / threads * LANES_STEP;
-        slices[i] = (slice){.job = job,
-                            .query = query,
-                            .best = best,
-                            .from = i * steps / threads * LANES_STEP,
-                            .to = to < query->active ? to : query->active};
+        s.from = i * steps / threads * LANES_STEP;
+        s.to = to < query->active ? to : query->active;
+    } else {
+        s.first = (uint32_t)((uint64_t)query->count * i / threads);
+        s.count = (uint32_t)((uint64_t)query->count * (i + 1) / threads) - s.first;
     }
-    bool started[HP_PACKET_PRIMARIES / LANES_STEP] = {false};
+    return s;
+}
+
+static void clear(hp_best *best) {
+    for (unsigned i = 0; i < HP_PACKET_PRIMARIES; i++) {
+        best->T[i] = INFINITY;
+        best->index[i] = HP_NO_INDEX;
+    }
+}
+
+/* `later` comes of higher secondaries, so it wins only where it is closer. */
+static void merge(hp_best *best, const hp_best *later) {
+    for (unsigned i = 0; i < HP_PACKET_PRIMARIES; i++) {
+        if (!(later->T[i] < best->T[i])) continue;
+        best->T[i] = later->T[i];
+        best->index[i] = later->index[i];
+    }
+}
+
+static unsigned threads_for(const hp_results_job *job, const hp_query *query) {
+    unsigned most = query->mode == HP_MODE_ANY ? (query->active + LANES_STEP - 1) / LANES_STEP : THREADS_MAX;
+    unsigned threads = (uint64_t)query->count * query->active < SMALL_WORK ? 1 : job->threads;
+    return threads < most ? threads : most;
+}
+
+/* The caller's thread takes the first part. A thread that cannot be had does not matter: its part is done here. */
+static void test_all(const hp_results_job *job, const hp_query *query, hp_best *best) {
+    hp_best bests[THREADS_MAX];
+    slice slices[THREADS_MAX];
+    unsigned threads = threads_for(job, query);
+    bool shared = query->mode == HP_MODE_ANY; /* primaries apart: one hp_best serves all */
+    for (unsigned i = 0; i < threads; i++) {
+        if (i == 0 || !shared) clear(&bests[i]);
+        slices[i] = slice_of(job, query, i, threads, &bests[shared ? 0 : i]);
+    }
     for (unsigned i = 1; i < threads; i++)
-        started[i] = pthread_create(&slices[i].thread, NULL, test_slice, &slices[i]) == 0;
+        slices[i].started = pthread_create(&slices[i].thread, NULL, test_slice, &slices[i]) == 0;
     for (unsigned i = 0; i < threads; i++)
-        if (!started[i]) test_slice(&slices[i]);
+        if (!slices[i].started) test_slice(&slices[i]);
     for (unsigned i = 1; i < threads; i++)
-        if (started[i]) pthread_join(slices[i].thread, NULL);
+        if (slices[i].started) pthread_join(slices[i].thread, NULL);
+    *best = bests[0];
+    for (unsigned i = 1; i < threads && !shared; i++) merge(best, &bests[i]);
 }
 
 /* The whole record of a pair, by the scalar pipe. */
@@ -83,10 +152,6 @@ void hp_results_find(const hp_results_job *job, hp_query *query, uint32_t *hit) 
         return;
     }
     hp_best best;
-    for (unsigned i = 0; i < HP_PACKET_PRIMARIES; i++) {
-        best.T[i] = INFINITY;
-        best.index[i] = HP_NO_INDEX;
-    }
     if (query->active) test_all(job, query, &best);
     for (unsigned i = 0; i < query->active; i++) {
         bool found = best.index[i] != HP_NO_INDEX;

@@ -15,7 +15,7 @@ typedef uint32_t bits;
 
 #if HP_SCALAR_FLUSH
 #define HP_SETTLE(result, measure, least)                                                                            \
-    (__builtin_fabsf(measure) < (least) ? __builtin_copysignf(0, result) : (result))
+    (__builtin_expect(__builtin_fabsf(measure) < (least), 0) ? __builtin_copysignf(0, result) : (result))
 #define HP_IS_SMALL(result) __builtin_expect(__builtin_fabsf(result) <= 0x1p-126f, 0)
 #else
 #define HP_SETTLE(result, measure, least) (result)
