@@ -33,10 +33,14 @@ static hp_status read_object(hp_text *text, hp_object object, float *words, hp_f
     return hp_text_fault(text, fault, "%s", wrong);
 }
 
-/* A first line whose first field is no number. */
+/* A first line of which no field is a number: one that holds some is an object gone wrong. */
 static bool at_header(hp_text text) {
-    float value;
-    return !hp_text_float(&text, &value);
+    while (!line_ends(&text)) {
+        float value;
+        if (hp_text_float(&text, &value)) return false;
+        while (!line_ends(&text) && *text.at++ != ',') continue;
+    }
+    return true;
 }
 
 static hp_status read_lines(hp_text *text, hp_object object, hp_objects *objects, hp_fault *fault) {

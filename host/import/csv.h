@@ -1,7 +1,7 @@
 /* Objects as text: one a line, its words in the order of objects.def, with commas between.
  *
  * Decimal (the nearest binary32) or hexadecimal floats; blanks are free; '#' begins a comment; empty lines count for
- * nothing; a first line that does not begin with a number is a header. */
+ * nothing; a first line without any number is a header. */
 #ifndef HITPIPE_HOST_CSV_H
 #define HITPIPE_HOST_CSV_H
 

@@ -1,5 +1,6 @@
 #include "host/import/text.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -7,11 +8,13 @@
 #include <string.h>
 
 hp_text hp_text_open(const hp_bytes *bytes) {
-    const char *start = (const char *)bytes->data;
+    static const char byte_order_mark[] = "\xEF\xBB\xBF"; /* some programs begin UTF-8 with it */
+    const char *start = (const char *)bytes->data, *end = start + bytes->n;
+    if (strncmp(start, byte_order_mark, 3) == 0) start += 3;
     return (hp_text){
         .name = bytes->name,
         .at = start,
-        .end = start + bytes->n,
+        .end = end,
         .line_start = start,
         .line = 1,
         .numerals = newlocale(LC_ALL_MASK, "C", (locale_t)0),
@@ -63,13 +66,18 @@ bool hp_text_take(hp_text *text, const char *literal) {
     return false;
 }
 
+/* Whether a byte behind a number says that it was none. */
+static bool clings(char c) {
+    return isalnum((unsigned char)c) || c == '.' || c == '+' || c == '-' || c == '_';
+}
+
 bool hp_text_float(hp_text *text, float *value) {
     /* strtof would skip the line's end as white space */
     if (hp_text_at_line_end(text)) return false;
     char *after;
     *value = strtof_l(text->at, &after, text->numerals);
-    bool found = after != text->at;
-    text->at = after;
+    bool found = after != text->at && !clings(*after);
+    if (found) text->at = after;
     return found;
 }
 

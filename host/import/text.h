@@ -17,7 +17,8 @@ typedef struct hp_text {
     locale_t numerals;
 } hp_text;
 
-/* A cursor at the start of bytes, which must outlive it. Close it to give back the locale. */
+/* A cursor at the start of bytes, after a byte order mark of UTF-8. They must outlive it. Close it to give back the
+ * locale. */
 hp_text hp_text_open(const hp_bytes *bytes);
 void hp_text_close(hp_text *text);
 
@@ -32,7 +33,8 @@ size_t hp_text_word(hp_text *text, const char **word);
 /* Takes `literal` if the next word is exactly that. */
 bool hp_text_take(hp_text *text, const char *literal);
 
-/* Takes a number after blanks, on this line. False: there is none; the cursor stays after the blanks. */
+/* Takes a number after blanks, on this line. False: there is none, or something clings to it, as in 1.5.2 and 3x; the
+ * cursor stays after the blanks. */
 bool hp_text_float(hp_text *text, float *value);
 bool hp_text_integer(hp_text *text, long long *value);
 

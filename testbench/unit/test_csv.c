@@ -52,6 +52,31 @@ static void broken_lines_are_refused_with_their_place(void **state) {
     refused("1,2,nan,4,5,6\n", "f.csv:1:1: ");
     refused("1,2,1e39,4,5,6\n", "f.csv:1:1: ");
     refused("1,2,3,4,5,6\n1,2,3,4,inf,6\n", "f.csv:2:1: ");
+    refused("1.5.2,2,3,4,5,6\n", "f.csv:1:1: not a number");
+    refused("1,2,3x,4,5,6\n", "f.csv:1:5: not a number");
+}
+
+/* What passes for a header is never looked at again, so nothing that holds a number may. */
+static void a_broken_first_line_is_no_header(void **state) {
+    (void)state;
+    refused("l,2,3,4,5,6\n1,2,3,4,5,6\n", "f.csv:1:1: not a number");
+    refused(",2,3,4,5,6\n1,2,3,4,5,6\n", "f.csv:1:1: not a number");
+    refused("\"1\",2,3,4,5,6\n1,2,3,4,5,6\n", "f.csv:1:1: not a number");
+    refused("x,y,z,1\n1,2,3,4,5,6\n", "f.csv:1:1: not a number");
+}
+
+static void a_byte_order_mark_is_no_header(void **state) {
+    (void)state;
+    hp_objects objects;
+    hp_fault fault = {0};
+    if (read_text("\xEF\xBB\xBF"
+                  "1,2,3,4,5,6\n",
+                  HP_RAY, &objects, &fault) != HP_OK)
+        fail_msg("%s", fault.message);
+    assert_int_equal(objects.count, 1);
+    assert_true(objects.words[0] == 1);
+    hp_objects_free(&objects);
+    refused("\xEF\xBB\xBFone,2,3,4,5,6\n", "f.csv:1:1: not a number");
 }
 
 static void results_read_back_to_the_same_bits(void **state) {
@@ -83,6 +108,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lines_become_objects),
         cmocka_unit_test(broken_lines_are_refused_with_their_place),
+        cmocka_unit_test(a_broken_first_line_is_no_header),
+        cmocka_unit_test(a_byte_order_mark_is_no_header),
         cmocka_unit_test(results_read_back_to_the_same_bits),
     };
     return cmocka_run_group_tests_name("csv", tests, NULL, NULL);

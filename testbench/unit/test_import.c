@@ -281,6 +281,7 @@ static void assimp_reads_other_formats_in_order(void **state) {
 static void broken_obj_is_refused_with_its_place(void **state) {
     (void)state;
     refused(hp_mesh_read_obj, "v 1 2\n", "file:1:6: a vertex needs three numbers");
+    refused(hp_mesh_read_obj, "v 1.0.5 2 3\n", "file:1:3: a vertex needs three numbers");
     refused(hp_mesh_read_obj, "v 0 0 0\nv nan 0 0\n", "file:2:10: vertex 2: a coordinate is NaN");
     refused(hp_mesh_read_obj, "v 0 0 1e39\n", "a coordinate is infinite");
     refused(hp_mesh_read_obj, "v 0 0 -inf\n", "a coordinate is infinite");
