@@ -60,13 +60,19 @@ static void wrong_boards_are_refused(void **state) {
     refused("{\"lanes\": 65}", "lanes");
     refused("{\"lanes\": 65}", "64"); /* what is allowed */
     refused("{\"lanes\": -1}", "lanes");
-    refused("{\"lanes\": 1.5}", "a whole number or a word");
-    refused("{\"lanes\": null}", "a whole number or a word");
+    refused("{\"lanes\": 1.5}", "lanes = \"1.5\" is not allowed: 1 to 64");
+    refused("{\"lanes\": null}", "lanes = \"null\" is not allowed: 1 to 64");
+    refused("{\"lanes\": {}}", "lanes = \"{}\" is not allowed: 1 to 64");
+    refused("{\"subnormals\": true}", "gradual or flush");
+    refused("{\"wings\": {}}", "unknown key \"wings\"");
+    refused("{\"name\": null}", "name takes text");
+    refused("{\"ddr\": {\"latency\": 1}, \"ddr.latency\": 2}", "ddr.latency stands there twice");
     refused("{\"loop_order\": \"sideways\"}", "secondary-outer");
     refused("{\"preset\": \"wscg2008\"}", "wscg2007");
     refused("{\"preset\": 7}", "preset");
     refused("{\"pipes\": [\"ray-moon\"]}", "ray-moon");
-    refused("{\"pipes\": [1]}", "pipes");
+    refused("{\"pipes\": [1]}", "pipes = \"[1]\" is not allowed: names of pairs");
+    refused("{\"pipes\": []}", "pipes = \"[]\" is not allowed: names of pairs");
     refused("{\"ddr\": {\"refresh_interval\": 10, \"refresh_clocks\": 9}}", "ddr.refresh_interval");
 }
 
