@@ -1,12 +1,12 @@
 /* Wide lanes on AVX-512 (F, DQ, VL, BW). A flag is a bit of a mask register: compares write it, `and` and `or` are
- * mask operations, `any` is one kortest. MXCSR flushes. */
+ * mask operations, `any` is one kortest. MXCSR flushes. One vector: two keep the ports no busier, and spill. */
 #ifndef HP_ARCH_AVX512_H
 #define HP_ARCH_AVX512_H
 
 #include <immintrin.h>
 
 #define HP_FLUSH_IN_HARDWARE 1
-#define HP_VECTORS 2
+#define HP_VECTORS 1
 
 enum { HP_LANES = 16 };
 
