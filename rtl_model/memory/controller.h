@@ -8,10 +8,11 @@ typedef struct hp_controller {
     const hp_config *config;
     hp_ddr_state state; /* of the present clock */
     uint64_t left;      /* clocks that a refresh or an opening still takes after the present one */
-    uint64_t open_row;
-    uint64_t interval; /* clocks since the last multiple of the refresh interval */
-    bool due;          /* a refresh */
-    uint64_t beat;     /* address of the present clock */
+    bool row_open;
+    uint64_t row_first; /* first beat of the open row */
+    uint64_t interval;  /* clocks since the last multiple of the refresh interval */
+    bool due;           /* a refresh */
+    uint64_t beat;      /* address of the present clock */
 } hp_controller;
 
 hp_controller hp_controller_reset(const hp_config *config);

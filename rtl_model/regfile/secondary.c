@@ -66,11 +66,12 @@ static void transform(const hp_secondary_file *file, hp_secondary *secondary) {
 }
 
 bool hp_secondary_take(hp_secondary_file *file, uint64_t clock) {
-    unsigned from = file->beat * HP_BEAT_WORDS, to = from + HP_BEAT_WORDS;
-    const float *object = hp_ddr_object(file->ddr, file->query->secondary, scene_index(file));
-    for (unsigned w = from; w < to && w < file->words; w++) file->reading.words[w] = object[w];
+    unsigned from = file->beat * HP_BEAT_WORDS, n = file->words - from;
+    uint32_t index = scene_index(file);
+    const float *object = hp_ddr_object(file->ddr, file->query->secondary, index);
+    memcpy(file->reading.words + from, object + from, (n < HP_BEAT_WORDS ? n : HP_BEAT_WORDS) * sizeof(float));
     if (++file->beat < file->beats) return false;
-    file->reading.index = scene_index(file);
+    file->reading.index = index;
     file->reading.ready = clock + 1 + file->config->ddr_latency + file->transformer_clocks;
     if (file->query->moved) transform(file, &file->reading);
     uint64_t at = file->head + file->count++;
