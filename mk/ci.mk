@@ -12,7 +12,7 @@ format-check: ## fail if a C file is not laid out by .clang-format
 
 # The programs that start threads, under ThreadSanitizer. OpenMP's own barriers are known to it only through libarcher, which
 # comes with clang's runtime.
-TEST_THREADS ?= test_threads test_api test_driver
+TEST_THREADS ?= test_api test_driver test_board test_knobs
 test-threads: ## run the tests that use threads under ThreadSanitizer
 	@$(MAKE) BUILD=build/tsan CC=clang OPT=-O1 SANITIZE=thread $(TEST_THREADS:%=build/tsan/testbench/unit/%)
 	@BUILD=build/tsan OMP_TOOL_LIBRARIES=libarcher.so TSAN_OPTIONS="ignore_noninstrumented_modules=1" \

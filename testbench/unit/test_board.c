@@ -123,13 +123,15 @@ static void answers_are_folds_over_the_scalar_pipe(void **state) {
         }
 }
 
-/* Enough work for every thread: the same bits from one thread and from many. */
+/* Enough work for every thread: the same bits from one thread and from many. Every triangle is there twice, so that
+ * threads find equal keys and the lower index must win. */
 static void threads_do_not_change_answers(void **state) {
     (void)state;
     enum { MANY = 4000, PACKET = 250 };
     float *scene = malloc(MANY * HP_TRIANGLE_WORDS * sizeof *scene), packet[PACKET * HP_RAY_WORDS];
     assert_non_null(scene);
-    hpt_triangles(9, MANY, 1, scene);
+    hpt_triangles(9, MANY / 2, 1, scene);
+    memcpy(scene + MANY / 2 * HP_TRIANGLE_WORDS, scene, MANY / 2 * HP_TRIANGLE_WORDS * sizeof *scene);
     hpt_rays(10, PACKET, packet);
     for (hp_mode mode = HP_MODE_CLOSEST; mode <= HP_MODE_ANY; mode++) {
         hpt_script script = {0};
@@ -371,6 +373,47 @@ static void packets_without_credit_are_refused(void **state) {
     }
 }
 
+/* What had no buffer takes none: behind it there is room for a packet that has credit. */
+static void a_lost_packet_takes_no_buffer(void **state) {
+    (void)state;
+    for (hp_engine_kind engine = HP_ENGINE_QUICK; engine <= HP_ENGINE_CLOCKED; engine++) {
+        hp_board_def def = hpt_board("usb3", engine);
+        hpt_script script = {0};
+        hp_header header;
+        def.config.packet_buffers = 1;
+        def.config.decoder_clocks = 1000;
+        def.config.link_turnaround_ns = 0;
+        hpt_hello(&script);
+        hpt_counters(&script, false); /* the buffer is HELLO's still */
+        script.sequence = 0;
+        hpt_counters(&script, false); /* HELLO_REPLY gave credit for this one */
+        hpt_log log = hpt_play(&def, &script, 2);
+        assert_non_null(hpt_answer(&log, HP_OPCODE_ERROR, 0, &header));
+        assert_int_equal(header.status, HP_ERROR_SEQUENCE);
+        assert_int_equal(header.tag, 2);
+        assert_null(hpt_answer(&log, HP_OPCODE_ERROR, 1, &header));
+        assert_non_null(hpt_answer(&log, HP_OPCODE_COUNTERS_REPLY, 0, &header));
+        assert_int_equal(header.tag, 3);
+        hpt_log_free(&log);
+        hpt_script_free(&script);
+    }
+}
+
+/* More bytes than a packet has are of a wrong length, also when the header says that it has none behind it. */
+static void more_than_a_packet_is_of_a_wrong_length(void **state) {
+    (void)state;
+    hp_board_def def = hpt_board("usb3", HP_ENGINE_QUICK);
+    hpt_script script = {0};
+    hpt_hello(&script);
+    hpt_append(&script, 99, HP_PAYLOAD_MAX + 1);
+    size_t n = script.packets[1].n;
+    hp_header header = hpt_header(&script, 99, 0);
+    hpt_reseal(&script, &header);
+    script.packets[1].n = n;
+    assert_int_equal(first_error(&def, &script, 1), HP_ERROR_LENGTH);
+    hpt_script_free(&script);
+}
+
 static void a_board_that_cannot_be_is_refused(void **state) {
     (void)state;
     hp_board *board;
@@ -391,6 +434,8 @@ int main(void) {
                                        cmocka_unit_test(the_detail_names_the_field),
                                        cmocka_unit_test(limits_of_the_board_are_kept),
                                        cmocka_unit_test(packets_without_credit_are_refused),
+                                       cmocka_unit_test(a_lost_packet_takes_no_buffer),
+                                       cmocka_unit_test(more_than_a_packet_is_of_a_wrong_length),
                                        cmocka_unit_test(a_board_that_cannot_be_is_refused)};
     return cmocka_run_group_tests(tests, make_input, NULL);
 }
