@@ -19,7 +19,7 @@ run = $(if $(V),,@)
 # ---- packages: one list, installed by `make deps` when something is missing ----------------------------------------
 PACKAGES_BUILD := gcc libc6-dev pkg-config libjansson-dev libopenexr-dev libassimp-dev libpng-dev
 PACKAGES_CHECK := libcmocka-dev libgmp-dev mandoc g++
-PACKAGES_CI    := clang libomp-dev libclang-rt-14-dev clang-format gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
+PACKAGES_CI    := clang libclang-rt-14-dev clang-format gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
 
 # ---- sources: every room's files, no list by hand --------------------------------------------------------------------
 ARCH    := $(or $(shell $(CC) -dumpmachine 2>/dev/null | cut -d- -f1),$(shell uname -m))
@@ -49,7 +49,7 @@ ISA_FLAGS_neon   :=
 # ---- flags: the same bits everywhere, so no contraction and no fast-math -------------------------------------------------
 WARN   := -Wall -Wextra -Werror -Wshadow -Wvla -Wstrict-prototypes -Wmissing-prototypes
 # gcc 12 at -O3 can lose the rounding of a double to a float in its straight-line vectoriser, hence the third flag.
-BASE   := -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-fast-math -fno-tree-slp-vectorize $(WARN) -fPIC -pthread -fopenmp -g -MMD -MP
+BASE   := -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-fast-math -fno-tree-slp-vectorize $(WARN) -fPIC -pthread -g -MMD -MP
 ifneq ($(SANITIZE),)
 BASE   += -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer
 LDSAN  := -fsanitize=$(SANITIZE)
@@ -58,7 +58,7 @@ INC    := -Irtl_model/include -Idriver/include -I.
 CFLAGS ?=
 ALL_CFLAGS = $(OPT) $(BASE) $(INC) -DHITPIPE_BUILD_VERSION='"$(VERSION)"' $(CFLAGS)
 HOST_CFLAGS = $(shell pkg-config --cflags OpenEXR jansson libpng assimp 2>/dev/null)
-LIBS_LIB  := -lm -pthread -fopenmp
+LIBS_LIB  := -lm -pthread
 LIBS_HOST = -lOpenEXRCore $(shell pkg-config --libs jansson libpng assimp 2>/dev/null || echo -ljansson -lpng -lassimp)
 LIBS_TEST := -lcmocka -lgmp
 

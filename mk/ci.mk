@@ -10,12 +10,10 @@ format: ## lay out all C files by .clang-format
 format-check: ## fail if a C file is not laid out by .clang-format
 	@clang-format --dry-run --Werror $(FORMATTED) && echo "$(words $(FORMATTED)) files well laid out"
 
-# The programs that start threads, under ThreadSanitizer. OpenMP's own barriers are known to it only through libarcher, which
-# comes with clang's runtime.
-TEST_THREADS ?= test_api test_driver test_board test_knobs
+# The programs that start threads, under ThreadSanitizer.
+TEST_THREADS ?= test_api test_driver test_board
 test-threads: ## run the tests that use threads under ThreadSanitizer
 	@$(MAKE) BUILD=build/tsan CC=clang OPT=-O1 SANITIZE=thread $(TEST_THREADS:%=build/tsan/testbench/unit/%)
-	@BUILD=build/tsan OMP_TOOL_LIBRARIES=libarcher.so TSAN_OPTIONS="ignore_noninstrumented_modules=1" \
-	    testbench/run $(JOBS) $(TEST_THREADS:%=build/tsan/testbench/unit/%)
+	@BUILD=build/tsan testbench/run $(JOBS) $(TEST_THREADS:%=build/tsan/testbench/unit/%)
 
 .PHONY: format-check test-threads
