@@ -8,15 +8,26 @@ static unsigned place_of(hp_queue *queue, uint32_t tag) {
     return i;
 }
 
-/* Believes the header's word on sequence, credit and how far the board has got. */
-static void note(hp_queue *queue, const hp_header *header, unsigned place) {
+/* Whether an answer tells of records that none before it told of. */
+static bool tells_more(hp_command *command, const hp_header *header, const uint8_t *payload) {
+    if (!payload || header->opcode != HP_OPCODE_RESULT || header->length < HP_RESULT_FIXED) return false;
+    uint64_t told = hp_get64(payload + HP_AT_RESULT_first) + hp_get32(payload + HP_AT_RESULT_count);
+    if (told <= command->told) return false;
+    command->told = told;
+    return true;
+}
+
+/* Believes the header's word on sequence, credit and how far the board has got. Only what is new starts a new wait: a
+ * board that says the same for ever is not waited for. `payload` may be NULL. */
+static void note(hp_queue *queue, const hp_header *header, const uint8_t *payload, unsigned place) {
     bool final = header->opcode == HP_OPCODE_ERROR || header->flags & HP_FLAG_LAST;
     unsigned heard = place + final;
+    if (heard > queue->heard || tells_more(hp_queue_at(queue, place), header, payload))
+        hp_queue_renew_deadline(queue);
     if (heard > queue->heard) queue->heard = heard;
     if (hp_ahead(header->sequence, queue->expected) > 0 && hp_ahead(header->sequence, queue->highest) <= 0)
         queue->expected = header->sequence;
     if (hp_ahead(header->limit, queue->limit) > 0) queue->limit = header->limit;
-    hp_queue_renew_deadline(queue);
 }
 
 /* A number that no packet of this session can have made the board expect: it was reset, and knows nothing any more.
@@ -62,8 +73,10 @@ static void take(hp_queue *queue, const hp_header *header, const uint8_t *payloa
         return;
     }
     hp_status status = HP_ERROR_OPCODE;
+    uint64_t before = command->position;
     if (header->opcode == command->reply && header->status == HP_OK)
         status = command->take(command, payload, header->length, last);
+    if (last || command->position > before) hp_queue_renew_deadline(queue); /* the taker's time is not the board's */
     if (status == HP_ERROR_CANCELLED) {
         hp_queue_fail(queue, status, "%s", hp_status_text(status));
     } else if (status) {
@@ -96,11 +109,11 @@ void hp_queue_judge(hp_queue *queue, const hp_transfer *transfer) {
         hp_queue_fail(queue, HP_ERROR_SEQUENCE, "the board was reset and holds no scene any more: upload it again");
         return;
     }
-    if (known) note(queue, &header, place);
+    if (known) note(queue, &header, damage ? NULL : payload, place);
     if (damage || nobodys) {
         queue->counts.damaged += damage != HP_OK;
         queue->counts.dropped += nobodys;
-        if (nobodys && waiting) note(queue, &header, queue->heard);
+        if (nobodys && waiting) note(queue, &header, NULL, queue->heard);
         if (waiting && !queue->fault) queue->fault = damage ? damage : (hp_status)header.status;
     } else if (!known || queue->fault || queue->abandoned) {
         queue->counts.dropped++;

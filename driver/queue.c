@@ -70,7 +70,7 @@ hp_status hp_queue_open(hp_queue *queue, hp_transport *transport, hp_message *me
     hp_queue_shape(queue, 1, room - hp_packet_bytes(0) - HP_CRC_BYTES);
     for (unsigned i = 0; i < HP_IN_TRANSFERS; i++) {
         queue->in[i] = (hp_transfer){.bytes = malloc(room), .room = room, .done = in_done, .owner = queue};
-        if (!queue->in[i].bytes) return HP_ERROR_MEMORY;
+        if (!queue->in[i].bytes) return hp_say(message, HP_ERROR_MEMORY, "no memory for packets from the board");
     }
     for (unsigned i = 0; i < HP_IN_TRANSFERS; i++) listen(queue, &queue->in[i]);
     return queue->failure;
@@ -98,7 +98,7 @@ static void send_command(hp_queue *queue, hp_command *command) {
     if (queue->next_tag == HP_NO_TAG) queue->next_tag = 0;
     command->sequence = queue->next_sequence++;
     if (hp_ahead(queue->next_sequence, queue->highest) > 0) queue->highest = queue->next_sequence;
-    command->position = 0;
+    command->position = command->told = 0;
     command->sendings++;
     if (queue->sent == queue->heard) hp_queue_renew_deadline(queue);
     const hp_header header = {
@@ -213,7 +213,7 @@ static void advance(hp_queue *queue) {
     }
     take_arrivals(queue);
     if (queue->disconnected || queue->forgotten) return;
-    bool silent = status != HP_OK || now_ms() >= queue->deadline;
+    bool silent = status != HP_OK || now > queue->deadline;
     if (silent && !queue->fault) queue->fault = status == HP_ERROR_IO ? HP_ERROR_IO : HP_ERROR_TIMEOUT;
     if (queue->fault && (silent || queue->heard == queue->sent)) go_back(queue, silent);
 }

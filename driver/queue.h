@@ -46,6 +46,7 @@ struct hp_command {
     hp_queue *queue;
     uint32_t tag, sequence;
     unsigned sendings; /* how often it was sent */
+    uint64_t told;     /* records that its answers told of since it was last sent, taken or not */
     hp_transfer transfer;
     bool sending; /* the transport holds the transfer */
 };

@@ -32,6 +32,8 @@ typedef struct faulty {
     wire *arrived;    /* for the user, in order */
     wire *swapped[2]; /* waits for the next one */
     wire *delayed;
+    wire *babble;     /* comes again and again ... */
+    unsigned babbles; /* ... so many times yet */
     hp_transfer inner_in[INNER_INS];
 } faulty;
 
@@ -63,6 +65,14 @@ static void put_last(wire **list, wire *packet) {
     while (*list) list = &(*list)->next;
     packet->next = NULL;
     *list = packet;
+}
+
+static void free_list(wire *list) {
+    while (list) {
+        wire *next = list->next;
+        free(list);
+        list = next;
+    }
 }
 
 static void wire_done(hp_transfer *transfer) {
@@ -111,6 +121,10 @@ static void pass(faulty *link, const uint8_t *bytes, size_t n, bool in) {
         packet->silences = now.argument;
         put_last(&link->delayed, packet);
         return;
+    case FAULT_BABBLE:
+        link->babble = packet;
+        link->babbles = now.argument;
+        return;
     case FAULT_DISCONNECT:
         link->disconnected = true;
         free(packet);
@@ -126,6 +140,12 @@ static void inner_in_done(hp_transfer *transfer) {
     if (link->closing || transfer->status) return;
     pass(link, transfer->bytes, transfer->moved, true);
     link->inner->ops->submit_in(link->inner, transfer);
+}
+
+static void babble(faulty *link) {
+    free_list(link->arrived);
+    link->arrived = copy_of(link->babble->bytes, link->babble->n, true);
+    link->disconnected = --link->babbles == 0;
 }
 
 /* Nothing else happens: what was held comes through. True when something did. */
@@ -206,6 +226,7 @@ static unsigned complete(transfers *queue) {
 
 static unsigned hand_over(faulty *link) {
     unsigned completed = complete(&link->cancelled) + complete(&link->out);
+    if (link->babble) babble(link);
     while (link->arrived && link->in.first) {
         wire *packet = link->arrived;
         hp_transfer *transfer = take_first(&link->in);
@@ -243,14 +264,6 @@ static size_t transfer_max(const hp_transport *transport) {
     return link->inner->ops->transfer_max(link->inner);
 }
 
-static void free_list(wire *list) {
-    while (list) {
-        wire *next = list->next;
-        free(list);
-        list = next;
-    }
-}
-
 static void close_faulty(hp_transport *transport) {
     faulty *link = (faulty *)transport;
     link->closing = true;
@@ -260,6 +273,7 @@ static void close_faulty(hp_transport *transport) {
     complete(&link->out);
     free_list(link->arrived);
     free_list(link->delayed);
+    free(link->babble);
     free(link->swapped[0]);
     free(link->swapped[1]);
     for (unsigned i = 0; i < INNER_INS; i++) free(link->inner_in[i].bytes);

@@ -15,6 +15,7 @@ typedef enum fault_kind {
     FAULT_FLIP,       /* bit `argument`, modulo the packet's bits */
     FAULT_DELAY,      /* until nothing else happens; `argument` silences later */
     FAULT_DISCONNECT, /* and everything behind it */
+    FAULT_BABBLE,     /* to the host: comes `argument` times, and nothing else does; then the link is gone */
     FAULT_KINDS
 } fault_kind;
 

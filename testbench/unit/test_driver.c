@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include <cmocka.h>
 
@@ -395,6 +396,46 @@ static void a_fault_that_stays_is_named(void **state) {
     stays(b, FAULT_TRUNCATE, 5, true, HP_ERROR_LENGTH);
 }
 
+/* A board that says one thing for ever, in the midst of an answer, does not keep the driver from its timeout. */
+static void a_babbling_board_is_not_waited_for(void **state) {
+    bench *b = *state;
+    hp_result results[RAYS];
+    hp_device_def def = patient(1);
+    def.timeout_ms = 20;
+    b->plan = (plan){0};
+    assert_int_equal(connect_with(b, &def), HP_OK);
+    assert_int_equal(upload(b), HP_OK);
+    plan_fault(b, FAULT_BABBLE, 10000000, true, 0, 1); /* some seconds of it */
+    assert_int_equal(ask_closest(b, results), HP_ERROR_TIMEOUT);
+}
+
+typedef struct slow_taker {
+    tally seen;
+    unsigned naps;
+} slow_taker;
+
+static bool take_slowly(void *context, const uint32_t *primary, const uint32_t *secondary, const hp_result *records,
+                        size_t count) {
+    slow_taker *taker = context;
+    if (taker->naps++ < 3) nanosleep(&(struct timespec){.tv_nsec = 30000000}, NULL);
+    return count_records(&taker->seen, primary, secondary, records, count);
+}
+
+/* What the caller's own functions take counts as nobody's silence. */
+static void a_slow_taker_is_no_silent_board(void **state) {
+    bench *b = *state;
+    slow_taker taker = {.seen = {.b = b}};
+    hp_query_def query = hp_default_query_def();
+    hp_device_def def = patient(0);
+    query.mode = HP_MODE_ALL;
+    def.timeout_ms = 10;
+    b->plan = (plan){0};
+    assert_int_equal(connect_with(b, &def), HP_OK);
+    assert_int_equal(upload(b), HP_OK);
+    assert_int_equal(hp_query_all(b->device, &query, b->rays[0], RAYS, take_slowly, &taker), HP_OK);
+    check_each_once(&taker.seen);
+}
+
 /* The results of unanswered primaries are left alone, and the message counts the others. */
 static void what_was_not_answered_is_not_written(void **state) {
     bench *b = *state;
@@ -554,6 +595,8 @@ int main(void) {
         EACH_TEST(one_packet_delayed),
         EACH_TEST(one_packet_late),
         EACH_TEST(a_fault_that_stays_is_named),
+        EACH_TEST(a_babbling_board_is_not_waited_for),
+        EACH_TEST(a_slow_taker_is_no_silent_board),
         EACH_TEST(what_was_not_answered_is_not_written),
         EACH_TEST(a_disconnected_board_is_named_and_stays_so),
         EACH_TEST(an_upload_that_fails_leaves_no_scene),
