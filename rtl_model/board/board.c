@@ -92,21 +92,28 @@ hp_status hp_board_send(hp_board *board, const void *bytes, size_t n) {
     return HP_OK;
 }
 
-/* Every packet needs one of the board's buffers, but HELLO, which has its own: a host that has lost count says HELLO.
- */
+/* Every packet needs one of the board's buffers, but HELLO, which finds room when all are taken: a host that has lost
+ * count says HELLO. */
 static bool has_buffer(const hp_board *board, const hp_inbound *transfer) {
     hp_header header;
     const uint8_t *payload;
-    if (board->held_count < board->config.packet_buffers) return true;
+    if (board->buffers_taken < board->config.packet_buffers) return true;
     return transfer->n <= HP_HEADER_BYTES + HP_HELLO_FIXED + HP_CRC_BYTES &&
            hp_packet_open(transfer->bytes, transfer->n, &header, &payload) == HP_OK &&
            header.opcode == HP_OPCODE_HELLO;
 }
 
+/* Bytes of a transfer that are kept: of a packet that is lost its header; of more than any packet has, one more than
+ * a header, which is the wrong length whatever that header says. */
+static size_t bytes_kept(const hp_inbound *transfer, bool lost) {
+    if (lost) return transfer->n < HP_HEADER_BYTES ? transfer->n : HP_HEADER_BYTES;
+    return transfer->n > hp_packet_bytes(HP_PAYLOAD_MAX) ? HP_HEADER_BYTES + 1 : transfer->n;
+}
+
 void hp_board_received(hp_board *board) {
     hp_inbound *transfer = board->inbound;
-    bool lost = !has_buffer(board, transfer), too_long = transfer->n > hp_packet_bytes(HP_PAYLOAD_MAX);
-    size_t n = (lost || too_long) && transfer->n > HP_HEADER_BYTES ? HP_HEADER_BYTES : transfer->n;
+    bool lost = !has_buffer(board, transfer);
+    size_t n = bytes_kept(transfer, lost);
     hp_held *held = malloc(sizeof *held + n);
     if (held) {
         *held = (hp_held){.lost = lost, .n = n};
@@ -114,6 +121,7 @@ void hp_board_received(hp_board *board) {
         *board->held_end = held;
         board->held_end = &held->next;
         board->held_count++;
+        board->buffers_taken += !lost;
     }
     board->inbound = transfer->next;
     if (!board->inbound) board->inbound_end = &board->inbound;

@@ -37,6 +37,7 @@ struct hp_board {
     unsigned inbound_count;
     hp_held *held, **held_end; /* the oldest is the one under decoding or carried out */
     unsigned held_count;
+    unsigned buffers_taken;            /* of config.packet_buffers: held packets but those that were lost */
     hp_answer *answers, **answers_end; /* known to the link; the oldest may be on its way */
     hp_command command;                /* the one carried out */
     hp_query *query;                   /* of a QUERY carried out */

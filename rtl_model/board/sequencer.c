@@ -119,6 +119,7 @@ static void drop_held(hp_board *board) {
     board->held = held->next;
     if (!board->held) board->held_end = &board->held;
     board->held_count--;
+    board->buffers_taken -= !held->lost;
     free(held);
 }
 
