@@ -32,7 +32,7 @@ static void set_board(hp_cli *cli, const char *name, struct argp_state *state) {
 
 static error_t parse(int key, char *argument, struct argp_state *state) {
     hp_cli *cli = state->input;
-    char *end;
+    size_t threads;
     switch (key) {
     case KEY_TARGET:
         cli->device.target = argument;
@@ -49,9 +49,9 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
         cli->device.isa = argument;
         return 0;
     case KEY_THREADS:
-        cli->device.threads = (unsigned)strtoul(argument, &end, 10);
-        if (*end || end == argument || cli->device.threads > 1024)
+        if (!hp_cli_whole(argument, 1024, &threads))
             argp_error(state, "--threads takes a number from 0 to 1024, not '%s'", argument);
+        cli->device.threads = (unsigned)threads;
         return 0;
     case KEY_REPORT:
         cli->report = argument;
@@ -64,10 +64,19 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
         return 0;
     case ARGP_KEY_END:
         if (cli->vcd_path && !cli->device.clocked) argp_error(state, "--vcd needs --engine clocked");
+        hp_cli_claim(cli, cli->json ? "-" : NULL, state);
+        hp_cli_claim(cli, cli->report, state);
+        hp_cli_claim(cli, cli->vcd_path, state);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
+}
+
+void hp_cli_claim(hp_cli *cli, const char *path, struct argp_state *state) {
+    if (!path || strcmp(path, "-") != 0) return;
+    if (cli->taken) argp_error(state, "standard output takes one thing only: JSON, or one file named -");
+    cli->taken = true;
 }
 
 const struct argp hp_cli_argp = {.options = option_table, .parser = parse};
@@ -115,23 +124,33 @@ int hp_cli_end(hp_cli *cli, hp_status status, const hp_fault *fault) {
     return hp_status_exit(status);
 }
 
+/* The digits at the start of `text`; what stands behind them, or NULL if there are none, or too many. */
+static const char *digits(const char *text, size_t most, size_t *number) {
+    *number = 0;
+    const char *at = text;
+    for (; *at >= '0' && *at <= '9' && *number <= most; at++) *number = 10 * *number + (size_t)(*at - '0');
+    return at > text && *number <= most ? at : NULL;
+}
+
+bool hp_cli_whole(const char *text, size_t most, size_t *number) {
+    const char *end = digits(text, most, number);
+    return end && *end == 0;
+}
+
 bool hp_cli_numbers(const char *text, double *numbers, size_t n) {
     for (size_t i = 0; i < n; i++) {
         char *end;
         numbers[i] = strtod(text, &end);
         if (end == text) return false;
-        text = end + strspn(end, " \t,");
+        text = end + strspn(end, " \t");
+        if (*text == ',' && i + 1 < n) text++;
     }
     return *text == 0;
 }
 
-bool hp_cli_pair(const char *text, size_t *first, size_t *second) {
-    unsigned long a, b;
-    int end = -1;
-    if (sscanf(text, "%9lux%9lu%n", &a, &b, &end) != 2 || text[end] || a == 0 || b == 0) return false;
-    *first = a;
-    *second = b;
-    return true;
+bool hp_cli_pair(const char *text, size_t most, size_t *first, size_t *second) {
+    const char *end = digits(text, most, first);
+    return end && *end == 'x' && hp_cli_whole(end + 1, most, second) && *first > 0 && *second > 0;
 }
 
 const char *hp_cli_count(uint64_t count, char text[HP_COUNT_TEXT]) {

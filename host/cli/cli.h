@@ -24,6 +24,7 @@ typedef struct hp_cli {
     const char *report;   /* --report */
     const char *vcd_path; /* --vcd */
     bool json;            /* --json */
+    bool taken;           /* standard output is for one of these, or for a file that the verb claims */
     FILE *vcd;
     hp_progress_bar bar;
 } hp_cli;
@@ -46,11 +47,18 @@ hp_status hp_cli_device_fault(const hp_device *device, hp_status status, const c
 /* Says what went wrong on standard error, if anything did; the exit status. */
 int hp_cli_end(hp_cli *cli, hp_status status, const hp_fault *fault);
 
-/* Parses exactly n numbers with commas or blanks between. */
+/* A verb says so of each file that it will write, unless NULL. Ends the program with status 2 when a second one is
+ * "-", standard output. */
+void hp_cli_claim(hp_cli *cli, const char *path, struct argp_state *state);
+
+/* Parses digits, and nothing else, that make a number up to `most`. */
+bool hp_cli_whole(const char *text, size_t most, size_t *number);
+
+/* Parses exactly n numbers with a comma or blanks between. */
 bool hp_cli_numbers(const char *text, double *numbers, size_t n);
 
-/* Parses two whole numbers from 1 on with an 'x' between. */
-bool hp_cli_pair(const char *text, size_t *first, size_t *second);
+/* Parses two whole numbers from 1 to `most` with an 'x' between. */
+bool hp_cli_pair(const char *text, size_t most, size_t *first, size_t *second);
 
 /* Writes a count with commas between its thousands into `text`, and returns it. */
 enum { HP_COUNT_TEXT = 32 };

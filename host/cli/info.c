@@ -36,6 +36,11 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
     case ARGP_KEY_ARG:
         argp_error(state, "info takes no argument, but here is '%s'", argument);
         return 0;
+    case ARGP_KEY_END:
+        if (info->pipes && info->config) argp_error(state, "--pipes and --config exclude each other");
+        if ((info->pipes || info->config) && (info->cli.report || info->cli.vcd_path))
+            argp_error(state, "--pipes and --config ask no board: there is nothing for --report and --vcd");
+        return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
@@ -173,6 +178,19 @@ static json_t *board_json(const hp_device *device) {
     return json;
 }
 
+static hp_status write_report(hp_device *device, const char *path, hp_fault *fault) {
+    hp_counters counters;
+    double start = hp_seconds();
+    hp_status status = hp_read_counters(device, false, &counters);
+    if (status != HP_OK) return hp_cli_device_fault(device, status, NULL, fault);
+    json_t *report = hp_report_new(device);
+    hp_report_counters(report, &counters, hp_identify(device)->clock_hz);
+    hp_report_host(report, &counters, hp_seconds() - start);
+    status = hp_report_write(report, path, fault);
+    json_decref(report);
+    return status;
+}
+
 static hp_status show_boards(info_options *info, hp_fault *fault) {
     hp_device *device;
     hp_status status = hp_cli_open(&info->cli, &device, fault);
@@ -180,9 +198,10 @@ static hp_status show_boards(info_options *info, hp_fault *fault) {
         json_t *boards = json_pack("[o]", board_json(device));
         status = hp_report_write(boards, "-", fault);
         json_decref(boards);
-    } else if (status == HP_OK) {
+    } else if (status == HP_OK && !info->cli.taken) {
         print_board(device, &info->cli.device.board);
     }
+    if (status == HP_OK && info->cli.report) status = write_report(device, info->cli.report, fault);
     hp_status closed = hp_cli_close(&info->cli, device, status == HP_OK ? fault : &(hp_fault){0});
     return status == HP_OK ? closed : status;
 }

@@ -70,6 +70,7 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
         return 0;
     case ARGP_KEY_END:
         check_complete(query, state);
+        hp_cli_claim(&query->cli, query->out, state);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -115,8 +116,9 @@ static hp_status ask(const query_options *query, hp_device *device, const hp_obj
 static hp_status send_scene(const query_options *query, hp_device *device, const hp_objects *secondaries,
                             hp_fault *fault) {
     hp_status status = hp_upload(device, hp_pair_secondary(query->def.pair), secondaries->words, secondaries->count);
-    if (status == HP_OK && query->moved) status = hp_transform(device, query->matrix);
-    return status == HP_OK ? HP_OK : hp_cli_device_fault(device, status, query->secondary, fault);
+    if (status != HP_OK) return hp_cli_device_fault(device, status, query->secondary, fault);
+    if (query->moved) status = hp_transform(device, query->matrix);
+    return status == HP_OK ? HP_OK : hp_cli_device_fault(device, status, "--transform", fault);
 }
 
 static hp_status write_report(const query_options *query, hp_device *device, double seconds, hp_fault *fault) {
@@ -160,10 +162,10 @@ static hp_status run_on_board(query_options *query, const hp_objects *primaries,
 }
 
 int hp_verb_query(int argc, char **argv) {
-    query_options query = {.cli = hp_cli_begin(argv[0]), .def = hp_default_query_def(), .out = "-"};
+    query_options query = {.cli = hp_cli_begin(argv[0]), .def = hp_default_query_def()};
     query.cli.bar.what = "querying";
     argp_parse(&argp, argc, argv, 0, NULL, &query);
-    if (query.cli.json && strcmp(query.out, "-") == 0) query.out = "/dev/null";
+    if (!query.out) query.out = query.cli.taken ? "/dev/null" : "-";
     hp_fault fault = {0};
     hp_objects primaries = {0}, secondaries = {0};
     hp_status status = hp_csv_load(query.primary, hp_pair_primary(query.def.pair), &primaries, &fault);

@@ -46,7 +46,7 @@ static const struct argp argp = {
     .doc =
         "Sends the objects of golden vectors to the board, unchecked, in mode zip, and compares every answer bit for "
         "bit with the expected one.\vThe first record that differs in each file is shown in full. A simulated board "
-        "is set to the subnormals that a file is made for; another board must have them.",
+        "is set to the subnormals that a file is made for; any other must have them.",
     .children = children,
 };
 
@@ -96,14 +96,14 @@ static void tell(replay *r, const char *path, const hp_vectors *vectors, const h
     hp_divergence found = hp_diverge(vectors, answers);
     r->records += vectors->count;
     r->differ += found.count;
-    json_t *file = json_pack("{s:s, s:s, s:s, s:I, s:I}", "file", path, "pair", hp_pair_name(vectors->pair),
-                             "numerics", hp_numerics_name(vectors->numerics), "records", (json_int_t)vectors->count,
-                             "differ", (json_int_t)found.count);
+    json_t *file = json_pack("{s:o, s:s, s:s, s:I, s:I}", "file", hp_report_string(path), "pair",
+                             hp_pair_name(vectors->pair), "numerics", hp_numerics_name(vectors->numerics), "records",
+                             (json_int_t)vectors->count, "differ", (json_int_t)found.count);
     if (found.count > 0)
         json_object_set_new(file, "first", hp_divergence_json(vectors, found.first, &answers[found.first]));
     if (!json_object_get(r->report, "files")) json_object_set_new(r->report, "files", json_array());
     json_array_append_new(json_object_get(r->report, "files"), file);
-    if (r->cli.json) return;
+    if (r->cli.taken) return;
     printf("%s: %zu of %zu records differ\n", path, found.count, vectors->count);
     if (found.count > 0) hp_divergence_print(stdout, path, vectors, found.first, &answers[found.first]);
 }
@@ -135,7 +135,7 @@ static hp_status write_report(replay *r, double seconds, hp_fault *fault) {
 
 static hp_status conclude(replay *r, hp_fault *fault) {
     char count[HP_COUNT_TEXT];
-    if (!r->cli.json)
+    if (!r->cli.taken)
         printf("%d file%s, %s records, %zu differ\n", r->path_count, r->path_count == 1 ? "" : "s",
                hp_cli_count(r->records, count), r->differ);
     if (hp_file_finish(stdout, "-", fault) != HP_OK) return fault->status;

@@ -3,8 +3,10 @@
 
 #include "host/output/file.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum {
     KEY_OUT = 'o',
@@ -22,7 +24,9 @@ enum {
     KEY_RESAMPLE,
     KEY_SPACING,
     KEY_NO_SHADOWS,
-    MOST_FRAMES = 1000000
+    MOST_FRAMES = 1000000,
+    MOST_PIXELS = 65536, /* on a side */
+    MOST_SAMPLES = 32768
 };
 
 static const struct argp_option option_table[] = {
@@ -63,27 +67,26 @@ static void set_camera(trace_options *trace, const char *text, struct argp_state
 }
 
 static void set_flight(trace_options *trace, const char *text, struct argp_state *state) {
-    char *end;
-    trace->flight = strtoul(text, &end, 10);
-    if (*end || trace->flight == 0 || trace->flight > MOST_FRAMES)
+    if (!hp_cli_whole(text, MOST_FRAMES, &trace->flight) || trace->flight == 0)
         argp_error(state, "--flight takes a number of frames from 1 to %d, not '%s'", MOST_FRAMES, text);
 }
 
-static bool ends_in(const char *path, const char *extension) {
-    size_t n = strlen(path), k = strlen(extension);
-    return n >= k && strcmp(path + n - k, extension) == 0;
+bool trace_to_exr(const char *path) {
+    const char *dot = strrchr(path, '.');
+    return dot && strcasecmp(dot, ".exr") == 0;
 }
 
 static void check_together(const trace_options *trace, struct argp_state *state) {
-    bool camera = trace->eye || trace->at || trace->up || trace->fov;
+    bool camera = trace->eye || trace->at || trace->up || trace->fov || trace->size;
     if (!trace->scene_path) argp_error(state, "which scene?");
     if (trace->flight && trace->rays) argp_error(state, "--flight and --rays exclude each other");
-    if ((trace->flight || trace->rays) && camera) argp_error(state, "a camera needs neither --flight nor --rays");
+    if ((trace->flight || trace->rays) && camera) argp_error(state, "--flight and --rays are without a camera");
     if ((trace->flight || trace->rays) && trace->png) argp_error(state, "--png needs a camera");
     if (trace->png && trace->mode != HP_MODE_CLOSEST) argp_error(state, "--png needs --mode closest");
     if (trace->moving && !trace->flight) argp_error(state, "--moving needs --flight");
     if (trace->mode == HP_MODE_ALL && !trace->flight) argp_error(state, "--mode all needs --flight");
-    if (trace->flight && trace->out && ends_in(trace->out, ".exr")) argp_error(state, "a flight is written as .csv");
+    if (trace->no_shadows && !trace->png) argp_error(state, "--no-shadows needs --png");
+    if (trace->flight && trace->out && trace_to_exr(trace->out)) argp_error(state, "a flight is written as .csv");
 }
 
 /* The next three take the options of their group; false for others. */
@@ -105,9 +108,9 @@ static bool parse_camera(trace_options *trace, int key, char *argument, struct a
         numbers(state, "--fov", argument, &trace->camera.fov, 1);
         return trace->fov = true;
     case KEY_SIZE:
-        if (!hp_cli_pair(argument, &trace->width, &trace->height) || trace->width > 65536 || trace->height > 65536)
-            argp_error(state, "--size takes WxH, each from 1 to 65536, not '%s'", argument);
-        return true;
+        if (!hp_cli_pair(argument, MOST_PIXELS, &trace->width, &trace->height))
+            argp_error(state, "--size takes WxH, each from 1 to %d, not '%s'", MOST_PIXELS, argument);
+        return trace->size = true;
     default:
         return false;
     }
@@ -138,11 +141,13 @@ static bool parse_heightfield(trace_options *trace, int key, char *argument, str
     switch (key) {
     case KEY_SPACING:
         numbers(state, "--spacing", argument, spacing, 2);
-        if (spacing[0] == 0 || spacing[1] == 0) argp_error(state, "--spacing: lengths between samples are not zero");
+        for (int axis = 0; axis < 2; axis++)
+            if (spacing[axis] == 0 || !isfinite(spacing[axis]))
+                argp_error(state, "--spacing: lengths between samples are finite and not zero");
         return true;
     case KEY_RESAMPLE:
-        if (!hp_cli_pair(argument, &trace->scene_def.rows, &trace->scene_def.columns))
-            argp_error(state, "--resample takes RxC, not '%s'", argument);
+        if (!hp_cli_pair(argument, MOST_SAMPLES, &trace->scene_def.rows, &trace->scene_def.columns))
+            argp_error(state, "--resample takes RxC, each from 2 to %d, not '%s'", MOST_SAMPLES, argument);
         return true;
     default:
         return false;
@@ -170,6 +175,8 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
         return 0;
     case ARGP_KEY_END:
         check_together(trace, state);
+        hp_cli_claim(&trace->cli, trace->out, state);
+        hp_cli_claim(&trace->cli, trace->png, state);
         return 0;
     default:
         return parse_camera(trace, key, argument, state) || parse_rays(trace, key, argument, state) ||
@@ -198,7 +205,9 @@ static hp_status take_counters(trace_run *run, hp_counters *counters, hp_fault *
 
 static hp_status bring_up(trace_run *run, hp_fault *fault) {
     run->bar->what = "uploading";
+    double start = hp_seconds();
     hp_status status = hp_upload(run->device, HP_TRIANGLE, run->scene.mesh.words, run->scene.mesh.count);
+    run->host_seconds += hp_seconds() - start;
     if (status != HP_OK) return hp_cli_device_fault(run->device, status, run->options->scene_path, fault);
     return take_counters(run, &run->upload, fault);
 }
@@ -212,7 +221,7 @@ static hp_status write_report(trace_run *run, hp_fault *fault) {
     hp_report_host(run->report, &whole, run->host_seconds);
     hp_report_set(run->report, "seconds.scene_upload",
                   json_real((double)run->upload.clocks_total / (double)clock_hz));
-    hp_report_set(run->report, "scene.file", json_string(options->scene_path));
+    hp_report_set(run->report, "scene.file", hp_report_string(options->scene_path));
     hp_report_set(run->report, "scene.triangles", json_integer((json_int_t)run->scene.mesh.count));
     hp_report_set(run->report, "scene.degenerate", json_integer((json_int_t)run->scene.mesh.degenerate));
     hp_report_set(run->report, "mode", json_string(hp_mode_name(options->mode)));
@@ -238,7 +247,8 @@ void trace_summary(const trace_run *run, size_t rays, size_t hits) {
     const hp_identity *board = hp_identify(run->device);
     char a[HP_COUNT_TEXT], b[HP_COUNT_TEXT], c[HP_COUNT_TEXT];
     const hp_scene *scene = &run->scene;
-    printf("scene    %s: %s triangles", run->options->scene_path, hp_cli_count(scene->mesh.count, a));
+    printf("scene    %s: %s triangle%s", run->options->scene_path, hp_cli_count(scene->mesh.count, a),
+           scene->mesh.count == 1 ? "" : "s");
     if (scene->rows) printf(" from %zu x %zu samples", scene->rows, scene->columns);
     if (scene->mesh.degenerate) printf(", %s without area", hp_cli_count(scene->mesh.degenerate, b));
     hp_counters whole = run->upload;
@@ -276,9 +286,7 @@ int hp_verb_trace(int argc, char **argv) {
     argp_parse(&argp, argc, argv, 0, NULL, &options);
     hp_fault fault = {0};
     trace_run run = {.options = &options, .bar = &options.cli.bar};
-    bool taken = options.cli.json || (options.cli.report && strcmp(options.cli.report, "-") == 0) ||
-                 (options.out && strcmp(options.out, "-") == 0);
-    run.words = !taken; /* standard output belongs to something else */
+    run.words = !options.cli.taken;
     hp_status status = probe(&options, &fault);
     if (status == HP_OK) status = hp_scene_load(options.scene_path, &options.scene_def, &run.scene, &fault);
     if (status == HP_OK) status = hp_cli_open(&options.cli, &run.device, &fault);

@@ -14,7 +14,7 @@ typedef struct trace_options {
     const char *scene_path, *out, *png, *rays;
     size_t width, height;
     hp_camera camera; /* of the options given */
-    bool eye, at, up, fov;
+    bool eye, at, up, fov, size;
     size_t flight; /* frames; 0: no flight */
     bool moving, no_shadows;
 } trace_options;
@@ -27,7 +27,7 @@ typedef struct trace_run {
     hp_scene scene;
     hp_counters upload;   /* counts of bringing up the scene */
     hp_counters counters; /* counts since then */
-    double host_seconds;  /* of the queries */
+    double host_seconds;  /* of the board's work: upload and queries */
     json_t *report;
     bool words; /* a summary for people on standard output */
 } trace_run;
@@ -35,6 +35,9 @@ typedef struct trace_run {
 hp_status trace_picture(trace_run *run, hp_fault *fault);
 hp_status trace_rays(trace_run *run, hp_fault *fault);
 hp_status trace_flight(trace_run *run, hp_fault *fault);
+
+/* Whether a file of results is an EXR by its name; others are CSV. */
+bool trace_to_exr(const char *path);
 
 /* Says how the scene, the board and the host did, on standard output. */
 void trace_summary(const trace_run *run, size_t rays, size_t hits);

@@ -44,9 +44,9 @@ static hp_status write_csv(const char *path, const hp_result *results, size_t n,
 
 static hp_status write_results(const trace_run *run, const hp_result *results, size_t width, size_t height,
                                hp_fault *fault) {
-    const char *path = run->options->out, *dot = path ? strrchr(path, '.') : NULL;
+    const char *path = run->options->out;
     if (!path) return HP_OK;
-    if (!dot || strcmp(dot, ".exr") != 0) return write_csv(path, results, width * height, fault);
+    if (!trace_to_exr(path)) return write_csv(path, results, width * height, fault);
     const hp_exr_text texts[] = {
         {"comments",
          "T: distance along the ray; index: triangle, 4294967295 for none; F: 1 hit; CP: collision position"},

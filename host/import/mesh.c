@@ -36,6 +36,15 @@ bool hp_triangle_degenerate(const float *words) {
     return flat(a, b, c, 0, 1) && flat(a, b, c, 1, 2) && flat(a, b, c, 2, 0);
 }
 
+bool hp_mesh_reserve(hp_mesh *mesh, size_t count) {
+    if (count > SIZE_MAX / (HP_TRIANGLE_WORDS * sizeof(float))) return false;
+    float *words = realloc(mesh->words, count * HP_TRIANGLE_WORDS * sizeof(float));
+    if (!words) return false;
+    mesh->words = words;
+    mesh->room = count;
+    return true;
+}
+
 bool hp_mesh_add(hp_mesh *mesh, const float *v0, const float *v1, const float *v2) {
     if (!hp_grow((void **)&mesh->words, &mesh->room, mesh->count, HP_TRIANGLE_WORDS * sizeof(float))) return false;
     float *words = mesh->words + mesh->count * HP_TRIANGLE_WORDS;

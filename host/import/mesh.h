@@ -29,6 +29,10 @@ hp_status hp_mesh_read_stl(const hp_bytes *bytes, hp_mesh *mesh, hp_fault *fault
  * some units in the last place: that is why OBJ, PLY and STL have readers of their own. */
 hp_status hp_mesh_read_assimp(const char *path, hp_mesh *mesh, hp_fault *fault);
 
+/* Makes room for that many triangles at once: no more is taken than they need, and what does not fit shows before any
+ * work. False: out of memory. */
+bool hp_mesh_reserve(hp_mesh *mesh, size_t count);
+
 /* Adds a triangle of three vertices (xyz each). False: out of memory. */
 bool hp_mesh_add(hp_mesh *mesh, const float *v0, const float *v1, const float *v2);
 

@@ -1,5 +1,7 @@
 #include "host/output/divergence.h"
 
+#include "host/output/report.h"
+
 #include <inttypes.h>
 #include <string.h>
 
@@ -93,10 +95,10 @@ json_t *hp_divergence_json(const hp_vectors *vectors, size_t i, const hp_result 
     json_t *differs = json_array();
     for (unsigned k = 0; k < HP_VECTOR_ANSWER_WORDS; k++)
         if (r.expected[k] != r.got[k]) json_array_append_new(differs, json_string(answer_names[k]));
-    return json_pack("{s:I, s:I, s:s, s:s, s:o, s:o, s:o, s:o, s:o}", "record", (json_int_t)i, "line",
-                     (json_int_t)vectors->lines[i], "group", group->name, "why", group->why, "primary",
-                     hex_list(r.primary_words, hp_object_words(r.primary)), "secondary",
-                     hex_list(r.secondary_words, hp_object_words(r.secondary)), "expected",
+    return json_pack("{s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "record", (json_int_t)i, "line",
+                     (json_int_t)vectors->lines[i], "group", hp_report_string(group->name), "why",
+                     hp_report_string(group->why), "primary", hex_list(r.primary_words, hp_object_words(r.primary)),
+                     "secondary", hex_list(r.secondary_words, hp_object_words(r.secondary)), "expected",
                      hex_list(r.expected, HP_VECTOR_ANSWER_WORDS), "got", hex_list(r.got, HP_VECTOR_ANSWER_WORDS),
                      "differs", differs);
 }

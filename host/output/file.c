@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static bool standard(const char *path) {
@@ -9,7 +10,8 @@ static bool standard(const char *path) {
 }
 
 static hp_status refused(const char *path, hp_fault *fault) {
-    return hp_fault_set(fault, HP_ERROR_IO, "%s: cannot be written: %s", path, strerror(errno));
+    const char *name = standard(path) ? "standard output" : path;
+    return hp_fault_set(fault, HP_ERROR_IO, "%s: cannot be written: %s", name, strerror(errno));
 }
 
 FILE *hp_file_create(const char *path, hp_fault *fault) {
@@ -34,7 +36,10 @@ hp_status hp_file_write(const char *path, const void *data, size_t n, hp_fault *
 
 hp_status hp_file_probe(const char *path, hp_fault *fault) {
     if (!path || standard(path)) return HP_OK;
-    bool existed = access(path, F_OK) == 0;
+    struct stat found;
+    bool existed = lstat(path, &found) == 0; /* a link that leads nowhere too: it must stay */
+    if (existed && stat(path, &found) == 0 && S_ISFIFO(found.st_mode))
+        return HP_OK;               /* a reader would take it for all */
     FILE *file = fopen(path, "ab"); /* keeps what stands there */
     if (!file) return refused(path, fault);
     fclose(file);

@@ -11,6 +11,17 @@ json_t *hp_report_new(const hp_device *device) {
                      "isa", board->isa);
 }
 
+json_t *hp_report_string(const char *text) {
+    json_t *string = json_string(text);
+    if (string) return string;
+    char *plain = strdup(text);
+    for (char *c = plain; c && *c; c++)
+        if (*c & 0x80) *c = '?';
+    string = json_string(plain);
+    free(plain);
+    return string;
+}
+
 void hp_report_set(json_t *report, const char *key, json_t *value) {
     const char *dot = strchr(key, '.');
     if (!dot) {

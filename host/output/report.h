@@ -16,6 +16,9 @@
 /* A report that names the board. The caller frees it with json_decref. NULL: out of memory. */
 json_t *hp_report_new(const hp_device *device);
 
+/* Text of any bytes: a file's name need not be UTF-8, which JSON is; then its bytes beyond ASCII become '?'. */
+json_t *hp_report_string(const char *text);
+
 /* Sets a value under a dotted key, making the objects on the way; takes over `value`. */
 void hp_report_set(json_t *report, const char *key, json_t *value);
 

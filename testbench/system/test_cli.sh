@@ -5,6 +5,10 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 h=$HITPIPE
 
+begins() { # NAME LINE: that is the first line of $output
+    if [ "$(printf '%s\n' "$output" | head -n 1)" = "$2" ]; then good; else bad "$1: $output"; fi
+}
+
 # ---- verbs and options ----
 status 2 "no verb" "$h"
 says "no verb" 'Usage: hitpipe VERB'
@@ -28,7 +32,9 @@ for verb in info trace query replay; do
     says "$verb --board nowhere" 'there are usb3, wscg2007, ideal'
 done
 status 2 "--vcd with the quick engine" "$h" info --vcd "$work/x.vcd"
-status 2 "threads" "$h" info --threads many
+for count in many -1 1025 4294967297 1e3 ''; do status 2 "threads '$count'" "$h" info --threads "$count"; done
+status 2 "two things to show" "$h" info --pipes --config
+status 2 "a report of no board" "$h" info --pipes --report "$work/x.json"
 status 2 "an ISA that is none" "$h" info --isa mmx
 status 4 "a target that is none" "$h" info --target moon
 status 2 "trace without scene" "$h" trace
@@ -47,6 +53,10 @@ status 0 "info --json" "$h" info --json
 says "info --json" '"target": "model"'
 status 0 "info --pipes" "$h" info --pipes
 says "the paper's operators" '^ray-triangle +27 +1 +0 +12 +15 '
+status 0 "info --report" "$h" info --report "$work/info.json"
+check "the report is there" grep -q '"to_board": [1-9]' "$work/info.json"
+status 0 "info --report -" "$h" info --report -
+begins "the report alone" '{'
 status 0 "info --pipes --json" "$h" info --pipes --json
 for key in pair multipliers dividers square_roots adders subtractors comparators ands levels clocks interval; do
     says "pipe key" "\"$key\":"
@@ -56,6 +66,7 @@ says "a knob" '^ddr\.row_beats +512 '
 status 0 "info --config --json" "$h" info --config --json
 says "a knob" '"key": "lanes"'
 status 4 "info to a full disk" sh -c "'$h' info --config >/dev/full"
+says "by its name" 'standard output: cannot be written: No space left'
 
 # ---- query ----
 cat >"$work/rays.csv" <<END
@@ -96,6 +107,19 @@ status 0 "clocked" q --engine clocked
 same "clocked" "$(q)"
 status 0 "moved" q --transform "1,0,0,0, 0,1,0,0, 0,0,1,3"
 says "moved" '^0,1,1,0.5,0.25,0.25,4$'
+for words in "1,0,0,0, 0,1,0,0, 0,0,1" "1,0,0,0,,0,1,0,0, 0,0,1,3" "1,0,0,0, 0,1,0,0, 0,0,1,3," "1,0,0,0, 0,1,0,0, 0,0,1,3x"; do
+    status 2 "no 12 numbers: $words" q --transform "$words"
+done
+# standard output takes one thing: the report, the results or the waveform
+status 0 "--report -" q --report -
+begins "no results before" '{'
+status 0 "--vcd -" q --vcd - --engine clocked
+begins "no results before" '$version hitpipe clocked engine $end'
+for two in "--json --report -" "--json --out -" "--out - --report -" "--report - --vcd - --engine clocked"; do
+    # shellcheck disable=SC2086
+    status 2 "on standard output: $two" q $two
+    says "on standard output: $two" 'standard output takes one thing'
+done
 status 0 "to a file" q --out "$work/r.csv" --report "$work/report.json"
 check "the file" sh -c "[ \"\$(cat $work/r.csv)\" = \"\$('$h' query ray-triangle -p $work/rays.csv -s $work/triangles.csv)\" ]"
 for key in clocks.total stalls.idle bytes.to_board bytes.to_host tests.run tests.skipped seconds.board seconds.host; do
@@ -125,6 +149,7 @@ head -n 2 "$work/rays.csv" >"$work/one.csv"
 status 3 "zip of different counts" "$h" query ray-triangle -m zip -p "$work/one.csv" -s "$work/triangles.csv"
 says "zip of different counts" 'as many secondaries as primaries: 3 and 1'
 status 3 "a matrix that is no number" q --transform "nan,0,0,0, 0,1,0,0, 0,0,1,3"
+says "a matrix that is no number" '--transform: matrix: row 0, column 0'
 
 echo '{"ddr": {"bytes": 72}}' >"$work/tiny.json"
 status 4 "more triangles than the DDR holds" q --board "$work/tiny.json"
@@ -142,4 +167,14 @@ says "full disk in mode all" '/dev/full: cannot be written'
 status 4 "no such directory" q --out "$work/none/r.csv"
 status 4 "report to a full disk" q --out "$work/r.csv" --report /dev/full
 status 4 "waveform to a full disk" q --out "$work/r.csv" --engine clocked --vcd /dev/full
+# a pipe is written to once, and a link that leads nowhere stays a link
+mkfifo "$work/pipe"
+cat "$work/pipe" >"$work/through-the-pipe" &
+check "report into a pipe" timeout 20 "$h" query ray-triangle -p "$work/rays.csv" -s "$work/triangles.csv" -o "$work/r.csv" \
+    --report "$work/pipe"
+wait
+check "it came through" grep -q '"run": 9' "$work/through-the-pipe"
+ln -s "$work/to-be-made" "$work/link"
+status 0 "report through a link" q --out "$work/r.csv" --report "$work/link"
+check "the link stays, and the file is where it leads" sh -c "test -h '$work/link' && test -s '$work/to-be-made'"
 report

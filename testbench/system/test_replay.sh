@@ -81,6 +81,14 @@ says "the word" '"T"'
 check "--report" "$HITPIPE" replay --report "$work/report.json" $vectors/*.hex
 check "counts every test of every file" grep -q "\"run\": $all,\?$" "$work/report.json"
 
+odd=$(printf '%s/f\303\050.hex' "$work")
+LC_ALL=C sed "s|^// why: .*|$(printf '// why: \303\050')|" "$work/flipped.hex" >"$odd"
+status 1 "a name and a remark that are not UTF-8" "$HITPIPE" replay --json "$odd"
+says "the file is in the report" '"file": ".*f\?\(\.hex"'
+says "the record too" '"record": 7'
+check "--report -" "$HITPIPE" replay --report - $vectors/random.hex
+check "nothing before it" test "$(printf '%s\n' "$output" | head -n 1)" = "{"
+
 # ---- broken files ----
 head -c 20000 $vectors/random.hex >"$work/short.hex"
 lines=$(($(wc -l <"$work/short.hex") + 1))

@@ -50,8 +50,21 @@ check "and never hit" test "$(cat "$work/r.csv")" = "primary,secondary,F,T,cpx,c
 status 0 "rays to standard output" "$h" trace "$work/mesh.obj" --rays "$work/rays.csv" --out -
 check "nothing else is there" test "$("$h" trace "$work/mesh.obj" --rays "$work/rays.csv" --out -)" = "$(cat "$work/r.csv")"
 status 0 "rays to EXR" "$h" trace "$work/mesh.obj" --rays "$work/rays.csv" --out "$work/r.exr"
+status 0 "rays to EXR in capitals" "$h" trace "$work/mesh.obj" --rays "$work/rays.csv" --out "$work/R.EXR"
+check "an EXR all the same" cmp "$work/r.exr" "$work/R.EXR"
+check "a picture to standard output" sh -c "'$h' trace '$work/mesh.obj' --size 8x8 --png - >'$work/s.png'"
+check "the picture by name" "$h" trace "$work/mesh.obj" --size 8x8 --png "$work/t.png"
+check "nothing but the picture was there" cmp "$work/s.png" "$work/t.png"
+status 2 "two things on standard output" "$h" trace "$work/mesh.obj" --size 8x8 --png - --out -
+status 2 "JSON and a file on standard output" "$h" trace "$work/mesh.obj" --size 8x8 --json --out -
 status 0 "the default camera sees a mesh" "$h" trace "$work/mesh.obj" --size 32x32 --json
 check "it hits" sh -c "[ \"\$('$h' trace '$work/mesh.obj' --size 32x32 --json | grep -oE '\"hits\": [0-9]+' | grep -oE '[0-9]+')\" -gt 50 ]"
+
+# names of files need not be UTF-8, JSON must be
+odd=$(printf '%s/m\303\050.obj' "$work")
+cp "$work/mesh.obj" "$odd"
+status 0 "a name that is not UTF-8" "$h" trace "$odd" --size 2x2 --json
+says "it is in the report" '"file": ".*m\?\(\.obj"'
 
 # ---- a flight ----
 flight() { # SCENE-SIZE FRAMES ARGUMENT...
@@ -84,7 +97,19 @@ check "moving changes what is hit" sh -c "! cmp -s '$work/f1.csv' '$work/f2.csv'
 compute_clocks() { flight "$1" 3 --board ideal --json | awk '/"compute"/ {inside = 1} inside && /"min"/ {print $2 + 0; exit}'; }
 check "one triangle a clock" test $(($(compute_clocks 50x60) - $(compute_clocks 20x30))) = $((2 * 49 * 59 - 1102))
 
-status 2 "flight of no frames" flight 20x30 0
+# the paper's terrain, one ray: the closed form of docs/timing.md
+clocks=$(flight 292x447 1 --board ideal --json | awk '/"compute"/ {inside = 1} inside && /"min"/ {print $2 + 0; exit}')
+latency=$("$h" info --pipes --json --board ideal | awk '/"clocks":/ {print $2 + 0}')
+check "one ray against the terrain: fill, issues, drain, flush" test "$clocks" = $((1 + 259572 + latency + 1))
+
+for frames in 0 -1 1000001 -18446744073709551615 2x ''; do status 2 "flight of '$frames' frames" flight 20x30 "$frames"; done
+status 2 "flight with a picture's size" flight 20x30 5 --size 4x4
+status 2 "no shadows of no picture" flight 20x30 5 --no-shadows
+for size in 0x0 4 4x4x4 -4x4 65537x1 4x 1e1x4 ''; do status 2 "size '$size'" "$h" trace "$work/mesh.obj" --size "$size"; done
+for size in -5x-5 999999999x2 9 0x0 ''; do status 2 "resampling to '$size'" "$h" trace $terrain --resample "$size"; done
+for spacing in nan,1 1,inf 0,1 1,,1 1,1,; do
+    status 2 "spacing '$spacing'" "$h" trace $terrain --resample 4x4 --size 2x2 --spacing "$spacing"
+done
 status 2 "moving without a flight" "$h" trace "$work/mesh.obj" --moving
 status 2 "mode all without a flight" "$h" trace "$work/mesh.obj" --mode all
 status 2 "a flight as EXR" flight 20x30 5 --out "$work/f.exr"
@@ -123,6 +148,15 @@ bad_scene 2 "resampling a mesh" 'only heightfields' "$work/mesh.obj" --resample 
 bad_scene 2 "resampling to a line" '2 x 2 samples' $terrain --resample 1x9
 echo '{"ddr": {"bytes": 36000}}' >"$work/tiny.json"
 bad_scene 4 "more triangles than the DDR holds" '[0-9]' $terrain --resample 20x30 --board "$work/tiny.json" --size 2x2
+# more than the host's memory holds is refused, and not tried; a sanitizer's own memory leaves no room for the limit
+if [ -z "${SANITIZE:-}" ]; then
+    bad_scene_in() { # GIBIBYTES ARGUMENT...: as bad_scene, in so little memory
+        status 4 "memory: $*" sh -c "ulimit -v $(($1 << 20)) && shift && exec '$h' trace \"\$@\"" sh "$@"
+        says "memory: $*" 'no memory for'
+    }
+    bad_scene_in 4 "$work/mesh.obj" --size 20000x20000
+    bad_scene_in 4 $terrain --resample 8000x8000 --size 2x2
+fi
 for option in --out --png --report; do
     bad_scene 4 "$option to a full disk" 'dev/full: cannot be written: No space' "$work/mesh.obj" --size 4x4 $option /dev/full
     bad_scene 4 "$option to nowhere" 'none/x: cannot be written: No such file' "$work/mesh.obj" --size 4x4 $option "$work/none/x"

@@ -433,6 +433,7 @@ static void heightfield_makes_triangles_in_row_major_order(void **state) {
     hp_mesh mesh;
     hp_fault fault;
     assert_int_equal(hp_heightfield_mesh(&field, &mesh, &fault), HP_OK);
+    assert_int_equal(mesh.room, 4); /* asked for at once, and not a triangle more */
     check_words(&mesh, words, 4);
     hp_mesh_free(&mesh);
     field.spacing[0] = 3e38;
