@@ -41,6 +41,7 @@ hp_status hp_open(const hp_device_def *def, hp_device **device) {
     if (!def) return hp_say(&open_message, HP_ERROR_USAGE, "no device def");
     if (def->cookie != HP_DEVICE_COOKIE)
         return hp_say(&open_message, HP_ERROR_USAGE, "the device def does not come from hp_default_device_def");
+    if (!def->timeout_ms) return hp_say(&open_message, HP_ERROR_USAGE, "timeout_ms is 0: nothing could come in time");
     hp_status status = hp_target_open(def, &transport, &open_message);
     return status ? status : hp_open_transport(def, transport, device, &open_message);
 }

@@ -55,6 +55,9 @@ static void opening_names_what_is_wrong(void **state) {
     refuses_to_open(NULL, HP_ERROR_USAGE, "no device def");
     def = small_def();
     assert_int_equal(hp_open(&def, NULL), HP_ERROR_USAGE);
+    def.timeout_ms = 0;
+    refuses_to_open(&def, HP_ERROR_USAGE, "timeout_ms");
+    def = small_def();
     def.target = "usb";
     refuses_to_open(&def, HP_ERROR_NO_DEVICE, "\"usb\"");
     def = small_def();

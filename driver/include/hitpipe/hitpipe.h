@@ -10,7 +10,7 @@
  *
  * Units: T of a ray pair counts lengths of the ray's own direction; every other length is in the units of the input.
  * Threads: a device is used by one thread at a time; different devices are independent. The library starts threads
- * only for the simulated board's arithmetic (hp_device_def.threads), prints nothing and keeps no global state.
+ * only for the simulated board's arithmetic (hp_device_def.threads), prints nothing and shares no state.
  * Errors: every call returns an hp_status (status.def: each with its cause); hp_error_message says place and cause in
  * words. After any error but HP_ERROR_DISCONNECTED the device can be used again. */
 #ifndef HITPIPE_HITPIPE_H
@@ -42,7 +42,7 @@ typedef struct hp_device_def {
     unsigned threads;   /* model: threads of the arithmetic; 0: one per processor */
     void (*vcd)(void *context, const char *text, size_t n); /* model, clocked: takes the waveform; NULL: none */
     void *vcd_context;
-    unsigned timeout_ms;   /* longest wait for one answer; default 10000 */
+    unsigned timeout_ms;   /* longest wait for anything new from the board, at least 1; default 10000 */
     unsigned retries;      /* how often a damaged or lost packet is sent again; default 3 */
     bool unchecked;        /* send objects and matrices as they are, NaN, infinities and zero directions too, which
                             * hp_upload, hp_transform and hp_query refuse otherwise: for bring-up and replay of golden
@@ -55,8 +55,9 @@ typedef struct hp_device_def {
 hp_device_def hp_default_device_def(void);
 
 /* Opens the target and says HELLO. On success *device is the caller's to close; else *device is NULL.
- * HP_ERROR_USAGE (def without cookie, unknown ISA, vcd without clocked), HP_ERROR_CONFIG, HP_ERROR_NO_DEVICE,
- * HP_ERROR_VERSION, HP_ERROR_TIMEOUT (a board that never answers: target "null" does this), HP_ERROR_MEMORY. */
+ * HP_ERROR_USAGE (def without cookie, no timeout, unknown ISA, vcd without clocked), HP_ERROR_CONFIG,
+ * HP_ERROR_NO_DEVICE, HP_ERROR_VERSION, HP_ERROR_TIMEOUT (a board that never answers: target "null" does this),
+ * HP_ERROR_MEMORY. */
 hp_status hp_open(const hp_device_def *def, hp_device **device);
 
 /* Cancels what is under way and frees the device. NULL is fine. */
@@ -79,7 +80,8 @@ const hp_identity *hp_identify(const hp_device *device);
 /* Makes `count` objects, hp_object_words(object) floats each, the resident secondaries, numbered from 0. `words` is
  * only read, and not kept. Waits until the board has them all. HP_ERROR_INPUT: an object that hp_object_fault
  * refuses, the message names its index, nothing is sent and the old scene stays. HP_ERROR_CAPACITY: more than the
- * board's DDR holds; the old scene stays. Link errors: the scene is undefined until the next upload that succeeds. */
+ * board's DDR holds; the old scene stays. Link errors, HP_ERROR_CANCELLED: there is no scene until the next upload
+ * that succeeds. */
 hp_status hp_upload(hp_device *device, hp_object object, const float *words, size_t count);
 
 /* Sets the transformer: secondaries are moved by the 3x4 row-major matrix in all later queries. NULL: not moved.
@@ -118,8 +120,8 @@ hp_status hp_query_all(hp_device *device, const hp_query_def *def, const float *
  */
 hp_status hp_read_counters(hp_device *device, bool clear, hp_counters *counters);
 
-/* Words on the last error of this device, with its place: "primary 17: direction is zero". Empty when there was none.
- * With NULL: words on the last hp_open of this thread. Valid until the next call. */
+/* Words on why the last call on this device failed, with the place: "primary 17: direction is zero". Empty when it
+ * did not. With NULL: the same of this thread's last hp_open. Valid until the next call. */
 const char *hp_error_message(const hp_device *device);
 
 #ifdef __cplusplus
