@@ -24,21 +24,29 @@ static bool keep_better(hp_update *update, unsigned i, const hp_result *result) 
     return better;
 }
 
-static void show(hp_update *update, unsigned first, const hp_result *result) {
-    update->address = first;
-    update->reads = update->newest[first];
+/* The waveform has room for one lane: the first that was a test. The others may hold no result at all. */
+static unsigned lane_shown(uint64_t tested) {
+    unsigned lane = 0;
+    while (tested >> lane > 1 && !(tested >> lane & 1)) lane++;
+    return lane;
+}
+
+static void show(hp_update *update, unsigned i, const hp_result *result) {
+    update->address = i;
+    update->reads = update->newest[i];
     update->T_in = result->T;
-    update->T_read = update->stencil_T[update->reads][first].T;
+    update->T_read = update->stencil_T[update->reads][i].T;
 }
 
 uint64_t hp_update_take(hp_update *update, unsigned first, unsigned lanes, uint64_t tested,
                         const hp_result *results) {
-    show(update, first, results);
+    unsigned shown = lane_shown(tested);
+    show(update, first + shown, &results[shown]);
     update->kept = 0;
     for (unsigned lane = 0; lane < lanes; lane++)
         if (tested >> lane & 1 && keep_better(update, first + lane, &results[lane]))
             update->kept |= UINT64_C(1) << lane;
-    update->T_written = update->stencil_T[update->newest[first]][first].T;
+    update->T_written = update->stencil_T[update->newest[first + shown]][first + shown].T;
     return update->any ? update->kept : 0;
 }
 
