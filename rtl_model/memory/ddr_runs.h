@@ -9,7 +9,8 @@ typedef struct hp_ddr_runs {
     uint64_t until;    /* a refresh or an opening goes on up to this clock (exclusive) */
     hp_ddr_state busy; /* which of them */
     uint64_t open_row;
-    uint64_t due; /* first clock in which the next refresh may begin */
+    uint64_t due;            /* first clock in which the next refresh may begin: a multiple of the interval */
+    uint64_t row, row_first; /* the row looked at last, and its first beat */
     uint64_t row_beats, row_clocks, interval, refresh_clocks;
 } hp_ddr_runs;
 
@@ -31,19 +32,29 @@ static inline uint64_t hp_min(uint64_t a, uint64_t b) {
     return a < b ? a : b;
 }
 
+/* The row of a beat. Divisions are dear and beats come in order, so the last row is tried first. */
+static inline uint64_t hp_ddr_row(hp_ddr_runs *ddr, uint64_t beat) {
+    if (beat - ddr->row_first >= ddr->row_beats) {
+        ddr->row = beat / ddr->row_beats;
+        ddr->row_first = ddr->row * ddr->row_beats;
+    }
+    return ddr->row;
+}
+
 /* The run that begins in clock t when `beats` beats from `beat` on are wanted (0: none). A refresh or an opening that
  * begins in t begins by this call. */
 static inline hp_ddr_run hp_ddr_plan(hp_ddr_runs *ddr, uint64_t t, uint64_t beat, uint64_t beats) {
     if (t < ddr->until) return (hp_ddr_run){ddr->busy, ddr->until - t};
     if (t >= ddr->due) {
-        ddr->due = (t / ddr->interval + 1) * ddr->interval;
+        ddr->due += ddr->interval;
+        if (t >= ddr->due) ddr->due = (t / ddr->interval + 1) * ddr->interval;
         ddr->open_row = HP_NO_ROW;
         ddr->busy = HP_DDR_REFRESH;
         ddr->until = t + ddr->refresh_clocks;
         return (hp_ddr_run){HP_DDR_REFRESH, ddr->refresh_clocks};
     }
     if (beats == 0) return (hp_ddr_run){HP_DDR_IDLE, ddr->due - t};
-    uint64_t row = beat / ddr->row_beats;
+    uint64_t row = hp_ddr_row(ddr, beat);
     if (row != ddr->open_row) {
         ddr->open_row = row;
         if (ddr->row_clocks) {
@@ -52,7 +63,7 @@ static inline hp_ddr_run hp_ddr_plan(hp_ddr_runs *ddr, uint64_t t, uint64_t beat
             return (hp_ddr_run){HP_DDR_ROW, ddr->row_clocks};
         }
     }
-    uint64_t in_row = (row + 1) * ddr->row_beats - beat;
+    uint64_t in_row = ddr->row_first + ddr->row_beats - beat;
     return (hp_ddr_run){HP_DDR_BEAT, hp_min(hp_min(beats, in_row), ddr->due - t)};
 }
 
