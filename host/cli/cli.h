@@ -34,7 +34,7 @@ extern const struct argp hp_cli_argp;
 
 hp_cli hp_cli_begin(const char *verb);
 
-/* Opens the board that the options name. The progress bar shows the driver's progress under bar.what.
+/* Opens the board that the options name. The progress bar shows the driver's progress.
  * Errors as hp_open; HP_ERROR_IO: the waveform cannot be written. */
 hp_status hp_cli_open(hp_cli *cli, hp_device **device, hp_fault *fault);
 

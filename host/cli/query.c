@@ -7,6 +7,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { KEY_PRIMARY = 'p', KEY_SECONDARY = 's', KEY_MODE = 'm', KEY_OUT = 'o', KEY_TRANSFORM = 't' };
 
@@ -147,6 +148,7 @@ static hp_status run_on_board(query_options *query, const hp_objects *primaries,
     if (status == HP_OK) status = send_scene(query, device, secondaries, fault);
     if (status == HP_OK) {
         hp_result_csv_header(file);
+        hp_progress_bar_begin(&query->cli.bar, "querying");
         status = ask(query, device, primaries, file, fault);
     }
     if (file) {
@@ -163,11 +165,12 @@ static hp_status run_on_board(query_options *query, const hp_objects *primaries,
 
 int hp_verb_query(int argc, char **argv) {
     query_options query = {.cli = hp_cli_begin(argv[0]), .def = hp_default_query_def()};
-    query.cli.bar.what = "querying";
     argp_parse(&argp, argc, argv, 0, NULL, &query);
     if (!query.out) query.out = query.cli.taken ? "/dev/null" : "-";
+    if (strcmp(query.out, "-") == 0 && isatty(STDOUT_FILENO)) query.cli.bar.terminal = false; /* results go there */
     hp_fault fault = {0};
     hp_objects primaries = {0}, secondaries = {0};
+    hp_progress_bar_begin(&query.cli.bar, "reading");
     hp_status status = hp_csv_load(query.primary, hp_pair_primary(query.def.pair), &primaries, &fault);
     if (status == HP_OK)
         status = hp_csv_load(query.secondary, hp_pair_secondary(query.def.pair), &secondaries, &fault);

@@ -110,6 +110,7 @@ static void tell(replay *r, const char *path, const hp_vectors *vectors, const h
 
 static hp_status replay_file(replay *r, const char *path, hp_fault *fault) {
     hp_vectors vectors;
+    hp_progress_bar_begin(&r->cli.bar, "replaying"); /* until the board is closed */
     hp_status status = hp_vectors_read(path, &vectors, fault);
     if (status != HP_OK) return status;
     hp_result *answers = calloc(vectors.count, sizeof *answers);
@@ -146,7 +147,6 @@ static hp_status conclude(replay *r, hp_fault *fault) {
 
 int hp_verb_replay(int argc, char **argv) {
     replay r = {.cli = hp_cli_begin(argv[0])};
-    r.cli.bar.what = "replaying";
     argp_parse(&argp, argc, argv, 0, NULL, &r);
     r.subnormals = r.cli.device.board.subnormals;
     hp_fault fault = {0};

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 enum {
     KEY_OUT = 'o',
@@ -204,7 +205,7 @@ static hp_status take_counters(trace_run *run, hp_counters *counters, hp_fault *
 }
 
 static hp_status bring_up(trace_run *run, hp_fault *fault) {
-    run->bar->what = "uploading";
+    hp_progress_bar_begin(run->bar, "uploading");
     double start = hp_seconds();
     hp_status status = hp_upload(run->device, HP_TRIANGLE, run->scene.mesh.words, run->scene.mesh.count);
     run->host_seconds += hp_seconds() - start;
@@ -288,6 +289,8 @@ int hp_verb_trace(int argc, char **argv) {
     trace_run run = {.options = &options, .bar = &options.cli.bar};
     run.words = !options.cli.taken;
     hp_status status = probe(&options, &fault);
+    if (options.out && strcmp(options.out, "-") == 0 && isatty(STDOUT_FILENO)) run.bar->terminal = false;
+    hp_progress_bar_begin(run.bar, "loading");
     if (status == HP_OK) status = hp_scene_load(options.scene_path, &options.scene_def, &run.scene, &fault);
     if (status == HP_OK) status = hp_cli_open(&options.cli, &run.device, &fault);
     if (status == HP_OK) status = run_on_board(&run, &fault);

@@ -88,7 +88,7 @@ static hp_status fly(flight *f, hp_fault *fault) {
         if (status != HP_OK) break;
         hp_counters_add(&run->counters, &counters);
         add_frame(f, &counters);
-        hp_progress_bar_show(run->bar, f->frame + 1, run->options->flight);
+        hp_progress_bar_part(run->bar, f->frame + 1, run->options->flight);
     }
     return status == HP_OK ? HP_OK : hp_cli_device_fault(run->device, status, NULL, fault);
 }
@@ -137,7 +137,7 @@ hp_status trace_flight(trace_run *run, hp_fault *fault) {
     const char *path = run->options->out;
     if (path && !(f.out = hp_file_create(path, fault))) return fault->status;
     if (f.out) hp_result_csv_header(f.out);
-    run->bar->what = "flying";
+    hp_progress_bar_begin(run->bar, "flying");
     hp_status status = fly(&f, fault);
     hp_progress_bar_end(run->bar);
     if (f.out) {

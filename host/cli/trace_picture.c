@@ -80,7 +80,7 @@ static uint8_t *find_shadows(trace_run *run, const hp_picture *picture, hp_fault
     if (!shadows || !rays || !pixels || !results) status = no_memory(fault, n);
     if (status == HP_OK) {
         size_t count = hp_picture_shadow_rays(picture, rays, pixels);
-        run->bar->what = "shadows";
+        hp_progress_bar_begin(run->bar, "shadows");
         if (count > 0) status = ask(run, HP_MODE_ANY, rays, count, results, fault);
         for (size_t i = 0; i < count && status == HP_OK; i++) shadows[pixels[i]] = (uint8_t)results[i].F;
         hp_report_set(run->report, "picture.shadow_rays", json_integer((json_int_t)count));
@@ -111,9 +111,10 @@ static hp_status write_png(trace_run *run, hp_picture *picture, hp_fault *fault)
 static hp_status trace_camera(trace_run *run, const hp_camera *camera, float *rays, hp_result *results,
                               hp_fault *fault) {
     size_t n = camera->width * camera->height;
+    hp_progress_bar_begin(run->bar, "tracing");
     hp_status status = hp_camera_rays(camera, rays, fault);
-    run->bar->what = "tracing";
     if (status == HP_OK) status = ask(run, run->options->mode, rays, n, results, fault);
+    hp_progress_bar_begin(run->bar, "writing");
     if (status == HP_OK) status = write_results(run, results, camera->width, camera->height, fault);
     if (status == HP_OK && run->options->png) {
         hp_picture picture = {camera->width, camera->height, rays, results, &run->scene, NULL};
@@ -146,7 +147,7 @@ hp_status trace_rays(trace_run *run, hp_fault *fault) {
     hp_status status = hp_csv_load(run->options->rays, HP_RAY, &rays, fault);
     if (status != HP_OK) return status;
     hp_result *results = calloc(rays.count, sizeof *results);
-    run->bar->what = "tracing";
+    hp_progress_bar_begin(run->bar, "tracing");
     status =
         results ? ask(run, run->options->mode, rays.words, rays.count, results, fault) : no_memory(fault, rays.count);
     if (status == HP_OK) status = write_results(run, results, rays.count, 1, fault);

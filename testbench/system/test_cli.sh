@@ -167,6 +167,15 @@ says "full disk in mode all" '/dev/full: cannot be written'
 status 4 "no such directory" q --out "$work/none/r.csv"
 status 4 "report to a full disk" q --out "$work/r.csv" --report /dev/full
 status 4 "waveform to a full disk" q --out "$work/r.csv" --engine clocked --vcd /dev/full
+# a bar on a terminal, for what takes more than a second, whatever it waits for; then it goes away
+if command -v script >/dev/null; then
+    slow="(sleep 1.5; cat '$work/rays.csv') | '$h' query ray-triangle -p - -s '$work/triangles.csv' --out '$work/r.csv'"
+    output=$(script -qec "$slow" /dev/null </dev/null | tr '\r' '\n')
+    says "a bar after a second" '^reading +\[\.{40}\]   0 %  since 1 s'
+    check "none at the end" test "$(printf '%s' "$output" | tail -n 1 | cut -c1-3)" = "$(printf '\033[K')"
+    quick="'$h' query ray-triangle -p '$work/rays.csv' -s '$work/triangles.csv' --out '$work/r.csv'"
+    check "none for what is quick" test -z "$(script -qec "$quick" /dev/null </dev/null)"
+fi
 # a pipe is written to once, and a link that leads nowhere stays a link
 mkfifo "$work/pipe"
 cat "$work/pipe" >"$work/through-the-pipe" &
