@@ -32,7 +32,7 @@ static const struct {
     const char *key, *meaning, *range;
 } text_keys[TEXT_KEYS] = {
     {"name", "what the board calls itself", "text of less than 32 bytes"},
-    {"pipes", "pipes resident on the board", "names of pairs with commas between, or all"},
+    {"pipes", "pipes resident on the board", "names of pairs with commas between, or all, or none"},
 };
 
 static uint64_t knob_value(const hp_config *config, const knob *k) {
@@ -203,8 +203,8 @@ static bool read_choice(const char *text, const char *choices, uint64_t *value) 
 
 static bool read_pipes(const char *text, uint32_t *pipes) {
     char name[KEY_ROOM];
-    if (strcmp(text, "all") == 0) {
-        *pipes = all_pipes();
+    if (strcmp(text, "all") == 0 || strcmp(text, "none") == 0) {
+        *pipes = strcmp(text, "all") == 0 ? all_pipes() : 0;
         return true;
     }
     for (*pipes = 0;; text++) {
@@ -259,7 +259,7 @@ hp_status hp_config_set(hp_config *config, const char *key, const char *value, c
 
 static void pipes_text(uint32_t pipes, char *text, size_t room) {
     size_t used = 0;
-    text[0] = '\0';
+    snprintf(text, room, "%s", pipes ? "" : "none");
     for (unsigned code = 0; code < 32; code++) {
         const char *name = pipes >> code & 1 ? hp_pair_name((hp_pair)code) : NULL;
         if (name && used < room) used += (size_t)snprintf(text + used, room - used, "%s%s", used ? "," : "", name);
@@ -295,8 +295,7 @@ static hp_status refuse(char *message, const char *why) {
 
 hp_status hp_config_check(const hp_config *config, char *message) {
     if (!memchr(config->name, '\0', NAME_ROOM)) return refuse(message, "name: text of less than 32 bytes");
-    if (!config->pipes || config->pipes & ~all_pipes())
-        return refuse(message, "pipes: at least one, and known ones only");
+    if (config->pipes & ~all_pipes()) return refuse(message, "pipes: known ones only");
     for (unsigned i = 0; i < KNOBS; i++) {
         uint64_t value = knob_value(config, &knobs[i]);
         if (in_range(&knobs[i], value)) continue;

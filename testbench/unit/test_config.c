@@ -147,11 +147,16 @@ static void name_and_pipes(void **state) {
     assert_true(hp_config_get(&config, "pipes", text, sizeof text));
     assert_string_equal(text, "ray-triangle");
     refused("pipes", "ray-tringle",
-            "pipes = \"ray-tringle\" is not allowed: names of pairs with commas between, or all");
+            "pipes = \"ray-tringle\" is not allowed: names of pairs with commas between, or all, or none");
     refused("pipes", "ray-triangle,",
-            "pipes = \"ray-triangle,\" is not allowed: names of pairs with commas between, or all");
+            "pipes = \"ray-triangle,\" is not allowed: names of pairs with commas between, or all, or none");
     assert_int_equal(hp_config_set(&config, "pipes", "all", message), HP_OK);
-    config.pipes = 0;
+    assert_int_equal(hp_config_set(&config, "pipes", "none", message), HP_OK);
+    assert_int_equal(config.pipes, 0);
+    assert_true(hp_config_get(&config, "pipes", text, sizeof text));
+    assert_string_equal(text, "none");
+    assert_int_equal(hp_config_check(&config, message), HP_OK);
+    config.pipes = UINT32_C(1) << 31;
     assert_int_equal(hp_config_check(&config, message), HP_ERROR_CONFIG);
     config = usb3();
     memset(config.name, 'x', sizeof config.name);

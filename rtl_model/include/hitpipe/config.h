@@ -11,7 +11,8 @@
 extern "C" {
 #endif
 
-/* Operators of a datapath. The first seven have a latency of their own in the operator table; AND, OR are gates in
+/* Operators of a datapath. The first seven have a latency of their own in the operator table (SQRT gets its knob with
+ * the first pipe that has one); AND, OR are gates in
  * the shadow of a comparator and NEG, ABS are wires: none of them takes a clock. MIN and MAX are a comparator and a
  * multiplexer. */
 typedef enum hp_operator {
@@ -54,8 +55,9 @@ hp_status hp_config_preset(hp_config *config, const char *name);
 const char *hp_config_preset_name(unsigned i);
 
 /* Sets one knob from text: a decimal whole number, or one of the words of a choice; "name" takes any text under 32
- * bytes and "pipes" a list of pair names with commas between, or "all". HP_ERROR_CONFIG for an unknown key or a value
- * out of range: `message` (HP_CONFIG_MESSAGE bytes) then names the key and what it allows, *config stays untouched.
+ * bytes and "pipes" a list of pair names with commas between, "all" or "none". HP_ERROR_CONFIG for an unknown key or
+ * a value out of range: `message` (HP_CONFIG_MESSAGE bytes) then names the key and what it allows, *config stays
+ * untouched.
  */
 hp_status hp_config_set(hp_config *config, const char *key, const char *value, char *message);
 
