@@ -142,10 +142,11 @@ static hp_status run_on_board(query_options *query, const hp_objects *primaries,
                               hp_fault *fault) {
     hp_device *device;
     hp_status status = hp_cli_open(&query->cli, &device, fault), closed;
-    FILE *file = status == HP_OK ? hp_file_create(query->out, fault) : NULL;
     double start = hp_seconds();
-    if (status == HP_OK && !file) status = fault->status;
+    if (status == HP_OK) status = hp_file_probe(query->out, fault);
     if (status == HP_OK) status = send_scene(query, device, secondaries, fault);
+    FILE *file = status == HP_OK ? hp_file_create(query->out, fault) : NULL; /* from here on older results are gone */
+    if (status == HP_OK && !file) status = fault->status;
     if (status == HP_OK) {
         hp_result_csv_header(file);
         hp_progress_bar_begin(&query->cli.bar, "querying");

@@ -153,7 +153,12 @@ says "a matrix that is no number" '--transform: matrix: row 0, column 0'
 
 echo '{"ddr": {"bytes": 72}}' >"$work/tiny.json"
 status 4 "more triangles than the DDR holds" q --board "$work/tiny.json"
-says "more triangles than the DDR holds" '[0-9]'
+says "more triangles than the DDR holds" '3 objects of type triangle: the board holds 2'
+echo older >"$work/older.csv"
+status 4 "the same, with results from before" q --board "$work/tiny.json" --out "$work/older.csv"
+check "they stay" grep -qx older "$work/older.csv"
+status 4 "the same, with none" q --board "$work/tiny.json" --out "$work/newer.csv"
+check "none appear" test ! -e "$work/newer.csv"
 echo '{"lanes": 65}' >"$work/lanes.json"
 status 3 "a knob out of its range" q --board "$work/lanes.json"
 says "a knob out of its range" 'lanes\.json: .*lanes.*64'
