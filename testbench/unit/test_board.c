@@ -381,6 +381,36 @@ static void limits_of_the_board_are_kept(void **state) {
     hpt_script_free(&fits), hpt_script_free(&over), hpt_script_free(&many), hpt_script_free(&early);
 }
 
+/* One query, wrong in three ways: what is told first is what docs/protocol.md has first. */
+static void a_query_is_refused_for_the_first_cause(void **state) {
+    (void)state;
+    static const struct {
+        bool pipe;
+        hp_object scene;
+        hp_status status;
+        uint32_t detail;
+    } causes[] = {{false, HP_SPHERE, HP_ERROR_NOT_RESIDENT, HP_PAIR_RAY_TRIANGLE},
+                  {true, HP_SPHERE, HP_ERROR_FIELD, PAYLOAD(QUERY, pair)},
+                  {true, HP_TRIANGLE, HP_ERROR_CAPACITY, 1}};
+    for (unsigned i = 0; i < 3; i++) {
+        hp_board_def def = hpt_board("usb3", HP_ENGINE_QUICK);
+        hpt_script script = {0};
+        hpt_query query = hpt_query_all(HP_MODE_CLOSEST, 10, RAYS, rays);
+        hp_header header;
+        if (!causes[i].pipe) def.config.pipes = 0;
+        hpt_hello(&script);
+        hpt_upload(&script, causes[i].scene, 0, 1, triangles);
+        hpt_ask(&script, &query);
+        hpt_log log = hpt_play(&def, &script, 1);
+        const uint8_t *payload = hpt_answer(&log, HP_OPCODE_ERROR, 0, &header);
+        assert_non_null(payload);
+        assert_int_equal(header.status, causes[i].status);
+        assert_int_equal(hp_get32(payload + HP_AT_ERROR_detail), causes[i].detail);
+        hpt_log_free(&log);
+        hpt_script_free(&script);
+    }
+}
+
 /* A packet that comes without credit finds no buffer; a HELLO always does. */
 static void packets_without_credit_are_refused(void **state) {
     (void)state;
@@ -460,6 +490,7 @@ int main(void) {
                                        cmocka_unit_test(faulty_packets_are_refused_by_name),
                                        cmocka_unit_test(the_detail_says_more),
                                        cmocka_unit_test(limits_of_the_board_are_kept),
+                                       cmocka_unit_test(a_query_is_refused_for_the_first_cause),
                                        cmocka_unit_test(packets_without_credit_are_refused),
                                        cmocka_unit_test(a_lost_packet_takes_no_buffer),
                                        cmocka_unit_test(more_than_a_packet_is_of_a_wrong_length),
