@@ -138,7 +138,7 @@ static void print_config(const hp_config *board) {
 
 static void pair_names(uint32_t resident, char *text, size_t room) {
     size_t at = 0;
-    text[0] = 0;
+    snprintf(text, room, "%s", resident ? "" : "none");
     for (size_t i = 0; i < PAIR_COUNT && at < room; i++)
         if (resident >> pairs[i] & 1)
             at += (size_t)snprintf(text + at, room - at, "%s%s", at ? ", " : "", hp_pair_name(pairs[i]));

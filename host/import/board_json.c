@@ -15,7 +15,7 @@ typedef struct board_file {
     hp_fault *fault;
 } board_file;
 
-/* Writes names with commas between. False: not an array of names, or too long. */
+/* Writes names with commas between, "none" for no name. False: not an array of names, or too long. */
 static bool names_text(json_t *names, char *text, size_t room) {
     size_t i, at = 0;
     json_t *item;
@@ -23,6 +23,7 @@ static bool names_text(json_t *names, char *text, size_t room) {
         if (!json_is_string(item) || at >= room) return false;
         at += (size_t)snprintf(text + at, room - at, "%s%s", i ? "," : "", json_string_value(item));
     }
+    if (i == 0) return (size_t)snprintf(text, room, "none") < room;
     return at > 0 && at < room;
 }
 
