@@ -158,8 +158,8 @@ static hp_stall tick_selector(hp_board *board) {
 }
 
 static void stop_primaries(hp_clocked *c, unsigned first, uint64_t lanes) {
-    for (unsigned lane = 0; lanes >> lane; lane++)
-        if (lanes >> lane & 1) c->selector.stopped[first + lane] = true;
+    for (; lanes; lanes >>= 1, first++)
+        if (lanes & 1) c->selector.stopped[first] = true;
     hp_selector_pass_over(&c->selector, &c->secondary);
 }
 

@@ -57,7 +57,7 @@ typedef struct hp_clocked {
     unsigned flushed; /* primaries */
     hp_sram sram;
     uint64_t query_start, tests_run;
-    uint64_t written, known, total, packet_records; /* records of the query */
+    uint64_t written, known, total;                 /* records of the query */
     hp_stall stall;                                 /* of the present clock */
     bool issued, moved, wrote, took, updated, full; /* in the present clock */
     struct hp_vcd *vcd;

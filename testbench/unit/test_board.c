@@ -158,6 +158,37 @@ static void threads_do_not_change_answers(void **state) {
     free(scene);
 }
 
+/* The most lanes there can be: the last one, too, stops its primary alone. */
+static void sixty_four_lanes_answer_as_one(void **state) {
+    (void)state;
+    enum { MANY = 50, PACKET = 128 };
+    float scene[MANY * HP_TRIANGLE_WORDS], packet[PACKET * HP_RAY_WORDS];
+    hpt_script script = {0};
+    hpt_triangles(2, MANY, 3, scene);
+    hpt_rays(1, PACKET, packet);
+    hpt_query query = hpt_query_all(HP_MODE_ANY, MANY, PACKET, packet);
+    hpt_hello(&script);
+    hpt_upload(&script, HP_TRIANGLE, 0, MANY, scene);
+    hpt_ask(&script, &query);
+    hp_result *one = NULL;
+    for (hp_engine_kind engine = HP_ENGINE_QUICK; engine <= HP_ENGINE_CLOCKED; engine++)
+        for (unsigned lanes = 1; lanes <= 64; lanes += 63) {
+            hp_board_def def = hpt_board("ideal", engine);
+            size_t n;
+            def.config.lanes = lanes;
+            hpt_log log = hpt_play(&def, &script, 1);
+            hp_result *got = hpt_records(&log, script.tag, &n);
+            assert_int_equal(n, PACKET);
+            assert_int_equal(got[63].F, 1); /* or the last lane has nothing to stop */
+            if (one) assert_memory_equal(got, one, n * sizeof *got);
+            if (one) free(got);
+            one = one ? one : got;
+            hpt_log_free(&log);
+        }
+    free(one);
+    hpt_script_free(&script);
+}
+
 /* Records wait for a slow link while the next packet changes the scene: they must not see it. */
 static void answers_keep_the_scene_they_were_asked_of(void **state) {
     (void)state;
@@ -486,6 +517,7 @@ static void a_board_that_cannot_be_is_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(answers_are_folds_over_the_scalar_pipe),
                                        cmocka_unit_test(threads_do_not_change_answers),
+                                       cmocka_unit_test(sixty_four_lanes_answer_as_one),
                                        cmocka_unit_test(answers_keep_the_scene_they_were_asked_of),
                                        cmocka_unit_test(faulty_packets_are_refused_by_name),
                                        cmocka_unit_test(the_detail_says_more),
