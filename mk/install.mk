@@ -16,6 +16,7 @@ install: all ## put program, library, headers, pkg-config file and man pages und
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' mk/hitpipe.pc.in >$(DEST)/lib/pkgconfig/hitpipe.pc
 	@for page in $(MAN_PAGES); do \
 	    install -D -m 644 $$page $(DEST)/share/man/man$${page##*.}/$${page##*/} || exit 1; done
+	@if [ -z "$(DESTDIR)" ] && [ "$$(id -u)" = 0 ]; then ldconfig || true; fi
 
 uninstall: ## take away what `make install` put there
 	rm -f $(DEST)/bin/hitpipe $(DEST)/lib/libhitpipe.* $(DEST)/lib/pkgconfig/hitpipe.pc

@@ -1,5 +1,6 @@
 #include "targets.h"
 #include <hitpipe/pipe.h>
+#include <stdlib.h>
 #include <string.h>
 
 static hp_status open_model(const hp_device_def *def, hp_transport **transport, hp_message *message) {
@@ -7,7 +8,7 @@ static hp_status open_model(const hp_device_def *def, hp_transport **transport, 
     if (hp_config_check(&def->board, why)) return hp_say(message, HP_ERROR_CONFIG, "%s", why);
     if (!hp_isa_choose(def->isa))
         return hp_say(message, HP_ERROR_USAGE, "the instruction set %.20s is not to be had here",
-                      def->isa ? def->isa : "of HP_ISA");
+                      def->isa ? def->isa : getenv("HP_ISA"));
     if (def->vcd && !def->clocked) return hp_say(message, HP_ERROR_USAGE, "only the clocked engine writes waveforms");
     const hp_board_def board = {
         .config = def->board,

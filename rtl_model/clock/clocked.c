@@ -391,5 +391,4 @@ static void clocked_destroy(hp_board *board) {
     free(c);
 }
 
-const hp_engine hp_engine_clocked = {"clocked",   clocked_create,  clocked_destroy,
-                                     clocked_run, clocked_records, clocked_settle};
+const hp_engine hp_engine_clocked = {clocked_create, clocked_destroy, clocked_run, clocked_records, clocked_settle};

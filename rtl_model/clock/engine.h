@@ -11,7 +11,6 @@
 struct hp_answer;
 
 typedef struct hp_engine {
-    const char *name;
     hp_status (*create)(hp_board *board);
     void (*destroy)(hp_board *board);
     /* Lets time pass until something arrives at an end of the link, or returns false: nothing is under way. */

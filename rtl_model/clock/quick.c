@@ -246,4 +246,4 @@ static void quick_destroy(hp_board *board) {
     free(q);
 }
 
-const hp_engine hp_engine_quick = {"quick", quick_create, quick_destroy, quick_run, quick_records, quick_settle};
+const hp_engine hp_engine_quick = {quick_create, quick_destroy, quick_run, quick_records, quick_settle};

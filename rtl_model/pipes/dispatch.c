@@ -51,6 +51,7 @@ const char *hp_isa_name(unsigned i) {
 
 const char *hp_isa_choose(const char *forced) {
     const char *wanted = forced ? forced : getenv("HP_ISA");
+    if (!forced && wanted && *wanted == '\0') wanted = NULL;
     for (unsigned i = 0;; i++) {
         const char *name = hp_isa_name(i);
         if (!name || !wanted || strcmp(name, wanted) == 0) return name;

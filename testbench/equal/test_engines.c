@@ -63,6 +63,27 @@ static void random_config(work *w) {
     random_memory(w);
 }
 
+/* Ends of ranges that chance does not meet. Takes nothing from the random numbers. */
+static void to_extremes(uint64_t seed, hp_config *c) {
+    switch (seed % 8) {
+    case 1:
+        c->lanes = 64;
+        break;
+    case 3:
+        for (unsigned i = 0; i < HP_OP_TIMED; i++) c->operator_clocks[i] = 0;
+        break;
+    case 5:
+        c->sram_records = c->packet_results = 1;
+        break;
+    case 7:
+        c->clock_hz = 1000000;
+        c->secondary_depth = 2;
+        break;
+    default:
+        break;
+    }
+}
+
 /* A scene in several packets, later ones overwriting what is there. */
 static void add_scene(work *w) {
     unsigned parts = 1 + (unsigned)below(w, 3);
@@ -159,6 +180,7 @@ static work *random_work(uint64_t seed) {
     w->random = hpt_random_seed(seed);
     w->scene = below(w, 24) ? SHORT : LONG; /* long: what is steady is taken in large steps */
     random_config(w);
+    to_extremes(seed, &w->config);
     hpt_triangles(hpt_random_bits(&w->random), LONG, below(w, 2) ? 1.0f : 3.0f, w->triangles);
     hpt_rays(hpt_random_bits(&w->random), PACKET, w->rays);
     if (below(w, 8)) hpt_hello(&w->script);

@@ -36,6 +36,8 @@ for count in many -1 1025 4294967297 1e3 ''; do status 2 "threads '$count'" "$h"
 status 2 "two things to show" "$h" info --pipes --config
 status 2 "a report of no board" "$h" info --pipes --report "$work/x.json"
 status 2 "an ISA that is none" "$h" info --isa mmx
+status 2 "HP_ISA that is none" env HP_ISA=mmx "$h" info
+status 0 "HP_ISA that is empty" env HP_ISA= "$h" info
 status 4 "a target that is none" "$h" info --target moon
 status 2 "trace without scene" "$h" trace
 status 2 "trace with two scenes" "$h" trace a.obj b.obj

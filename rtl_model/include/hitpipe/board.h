@@ -55,7 +55,7 @@ hp_status hp_board_send(hp_board *board, const void *bytes, size_t n);
  */
 hp_board_event hp_board_step(hp_board *board);
 
-/* Present counters, and ISA and engine in use ("avx512", "quick"). */
+/* Present counters, and the ISA in use ("avx512"). */
 hp_counters hp_board_counters(const hp_board *board);
 const char *hp_board_isa(const hp_board *board);
 
