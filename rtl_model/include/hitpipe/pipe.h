@@ -45,8 +45,8 @@ void hp_transform_object(hp_object object, hp_subnormals subnormals, const float
  * "sse2", "neon", "plain". NULL past the last. */
 const char *hp_isa_name(unsigned i);
 
-/* The one to use: `forced` if not NULL, else the environment's HP_ISA (empty: unset), else the best. NULL when that one is not to be
- * had. */
+/* The one to use: `forced` if not NULL, else the environment's HP_ISA (empty: unset), else the best. NULL when that
+ * one is not to be had. */
 const char *hp_isa_choose(const char *forced);
 
 #ifdef __cplusplus
