@@ -35,33 +35,8 @@ HP_INLINE num sqrt(num a) {
     return root > 0 && root < (num)INFINITY ? (root + a / root) / 2 : root;
 }
 
-HP_INLINE flag less(num a, num b) {
-    return a < b;
-}
-HP_INLINE flag at_most(num a, num b) {
-    return a <= b;
-}
-HP_INLINE num min(num a, num b) {
-    return a < b ? a : b;
-}
-HP_INLINE num max(num a, num b) {
-    return a < b ? b : a;
-}
-HP_INLINE num select(flag f, num a, num b) {
-    return f ? a : b;
-}
-HP_INLINE bits select_bits(flag f, bits a, bits b) {
-    return f ? a : b;
-}
-HP_INLINE flag and (flag a, flag b) {
-    return a && b;
-}
-HP_INLINE flag or (flag a, flag b) {
-    return a || b;
-}
-HP_INLINE num neg(num a) {
-    return -a;
-}
+#include "rtl_model/number/one_lane.h"
+
 HP_INLINE num abs(num a) {
     return __builtin_signbit((long double)a) ? -a : a;
 }

@@ -57,33 +57,8 @@ HP_INLINE num div(num a, num b) {
 HP_INLINE num sqrt(num a) {
     return __builtin_sqrtf(a);
 }
-HP_INLINE flag less(num a, num b) {
-    return a < b;
-}
-HP_INLINE flag at_most(num a, num b) {
-    return a <= b;
-}
-HP_INLINE num min(num a, num b) {
-    return a < b ? a : b;
-}
-HP_INLINE num max(num a, num b) {
-    return a < b ? b : a;
-}
-HP_INLINE num select(flag f, num a, num b) {
-    return f ? a : b;
-}
-HP_INLINE bits select_bits(flag f, bits a, bits b) {
-    return f ? a : b;
-}
-HP_INLINE flag and (flag a, flag b) {
-    return a && b;
-}
-HP_INLINE flag or (flag a, flag b) {
-    return a || b;
-}
-HP_INLINE num neg(num a) {
-    return -a;
-}
+#include "rtl_model/number/one_lane.h"
+
 HP_INLINE num abs(num a) {
     return __builtin_fabsf(a);
 }
