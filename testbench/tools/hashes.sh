@@ -1,6 +1,7 @@
 #!/bin/sh
 # hashes.sh "COMPILER OPT"...: builds hash_pipes with each and compares what every instruction set computes with
-# vectors/hashes.txt. Ends with 'N passed, N failed'. An aarch64 compiler's program runs under qemu, on fewer pairs.
+# vectors/hashes.txt, on 12 million pairs in each way of underflow. Ends with 'N passed, N failed'. An aarch64 compiler's program
+# runs under qemu, on fewer pairs.
 . testbench/support/check.sh
 
 # hash BUILD COMPILER COUNT RUNNER... : one check for each instruction set of that build
@@ -9,9 +10,12 @@ hash() {
     shift 3
     grep -E "^[a-z-]+ [a-z]+ [0-9]+ $count " vectors/hashes.txt >"$build/expected"
     check "$compiler: there are hashes of $count pairs" test -s "$build/expected"
-    for isa in scalar $("$@" "$build/hash_pipes" --isas); do
-        check "$compiler: $isa" sh -c "$* '$build/hash_pipes' --count $count $isa 2>/dev/null | cmp - '$build/expected'"
+    isas="scalar $("$@" "$build/hash_pipes" --isas)"
+    for isa in $isas; do
+        "$@" "$build/hash_pipes" --count "$count" "$isa" >"$build/$isa.hash" 2>/dev/null &
     done
+    wait
+    for isa in $isas; do check "$compiler: $isa" cmp "$build/$isa.hash" "$build/expected"; done
 }
 
 for compiler in "$@"; do
@@ -19,7 +23,6 @@ for compiler in "$@"; do
     check "build with $compiler" make BUILD="$build" CC="${compiler% *}" OPT="${compiler#* }" hash_pipes
     case $compiler in
     aarch64*) hash "$build" "$compiler" 500000 qemu-aarch64 -L /usr/aarch64-linux-gnu ;;
-    *-O0) hash "$build" "$compiler" 500000 env ;;
     *) hash "$build" "$compiler" 12000000 env ;;
     esac
 done
