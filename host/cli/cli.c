@@ -137,13 +137,28 @@ bool hp_cli_whole(const char *text, size_t most, size_t *number) {
     return end && *end == 0;
 }
 
+/* What stands behind a number that ends at `end`; a comma before another number is passed over. */
+static const char *behind(const char *end, bool more) {
+    end += strspn(end, " \t");
+    return *end == ',' && more ? end + 1 : end;
+}
+
 bool hp_cli_numbers(const char *text, double *numbers, size_t n) {
     for (size_t i = 0; i < n; i++) {
         char *end;
         numbers[i] = strtod(text, &end);
         if (end == text) return false;
-        text = end + strspn(end, " \t");
-        if (*text == ',' && i + 1 < n) text++;
+        text = behind(end, i + 1 < n);
+    }
+    return *text == 0;
+}
+
+bool hp_cli_floats(const char *text, float *numbers, size_t n) {
+    for (size_t i = 0; i < n; i++) {
+        char *end;
+        numbers[i] = strtof(text, &end);
+        if (end == text) return false;
+        text = behind(end, i + 1 < n);
     }
     return *text == 0;
 }

@@ -56,6 +56,8 @@ bool hp_cli_whole(const char *text, size_t most, size_t *number);
 
 /* Parses exactly n numbers with a comma or blanks between. */
 bool hp_cli_numbers(const char *text, double *numbers, size_t n);
+/* The same as the nearest binary32 of each, without a double on the way. */
+bool hp_cli_floats(const char *text, float *numbers, size_t n);
 
 /* Parses two whole numbers from 1 to `most` with an 'x' between. */
 bool hp_cli_pair(const char *text, size_t most, size_t *first, size_t *second);

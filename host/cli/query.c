@@ -29,10 +29,8 @@ static const struct argp_option option_table[] = {
 };
 
 static void set_transform(query_options *query, const char *text, struct argp_state *state) {
-    double numbers[12];
-    if (!hp_cli_numbers(text, numbers, 12))
+    if (!hp_cli_floats(text, query->matrix, 12))
         argp_error(state, "--transform takes 12 numbers with commas between, not '%s'", text);
-    for (int i = 0; i < 12; i++) query->matrix[i] = (float)numbers[i];
     query->moved = true;
 }
 

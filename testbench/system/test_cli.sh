@@ -109,6 +109,12 @@ status 0 "clocked" q --engine clocked
 same "clocked" "$(q)"
 status 0 "moved" q --transform "1,0,0,0, 0,1,0,0, 0,0,1,3"
 says "moved" '^0,1,1,0.5,0.25,0.25,4$'
+# just above the middle of two floats: by way of a double it would become the lower one
+printf '0.25,0.25,0,0,0,1\n' >"$work/up.csv"
+printf '0,0,0,1,0,0,0,1,0\n' >"$work/flat.csv"
+status 0 "moved to the nearest" "$h" query ray-triangle --primary "$work/up.csv" --secondary "$work/flat.csv" \
+    --transform "1,0,0,0, 0,1,0,0, 0,0,1,1.0000000596046447753906251"
+says "moved to the nearest" '^0,0,1,1\.00000012,'
 for words in "1,0,0,0, 0,1,0,0, 0,0,1" "1,0,0,0,,0,1,0,0, 0,0,1,3" "1,0,0,0, 0,1,0,0, 0,0,1,3," "1,0,0,0, 0,1,0,0, 0,0,1,3x"; do
     status 2 "no 12 numbers: $words" q --transform "$words"
 done
