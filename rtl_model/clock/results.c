@@ -2,13 +2,15 @@
 #include <hitpipe/pipe.h>
 #include <math.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <string.h>
 
 enum {
     LANES_STEP = 16,         /* primaries of a thread begin at a multiple of this */
     SMALL_WORK = 512 * 1024, /* tests below which a second thread costs more than it saves */
     THREADS_MAX = 64,
-    TILE = 64 /* secondaries at a time where they lie in the lanes */
+    PORTION = 8 * HP_BLOCK, /* secondaries a thread takes at a time */
+    TILE = 64               /* secondaries at a time where they lie in the lanes */
 };
 
 static hp_result miss(void) {
@@ -17,29 +19,40 @@ static hp_result miss(void) {
 
 /* ---- closest and any: the wide pipes keep the winner, the scalar pipe answers for it ---- */
 
-/* What a thread tests: primaries [from, to) against `count` secondaries from number `first` of the query on. */
+/* What a thread tests: primaries [from, to) against portions of the query's secondaries. `next` is the first
+ * secondary that no thread has taken yet: a thread that starts late, or whose processor is lent to somebody else,
+ * takes fewer. */
 typedef struct slice {
     const hp_results_job *job;
     const hp_query *query;
     unsigned from, to;
-    uint32_t first, count;
+    atomic_uint_fast64_t *next, all; /* `all` stands in for `next` where a thread has all secondaries to itself */
     hp_best *best;
     pthread_t thread;
     bool started;
 } slice;
 
+/* Takes the next portion: *first and *count. False when there is none. Within a thread, portions ascend. */
+static bool take_portion(slice *work, uint32_t *first, uint32_t *count) {
+    uint64_t from = atomic_fetch_add(work->next, PORTION), all = work->query->count;
+    if (from >= all) return false;
+    *first = (uint32_t)from;
+    *count = (uint32_t)(all - from < PORTION ? all - from : PORTION);
+    return true;
+}
+
 static const float *secondary_block(const slice *work, uint32_t k) {
     return hp_ddr_object(work->job->ddr, work->query->secondary, (uint64_t)work->query->first + k);
 }
 
-/* A primary alone would leave most lanes empty: here the lanes are secondaries. */
-static void test_one(const slice *work) {
+/* A primary alone would leave most lanes empty: here the lanes are secondaries. Returns whether it looks for more. */
+static bool test_one(const slice *work, uint32_t first, uint32_t count) {
     const hp_query *query = work->query;
     uint32_t F[TILE], *index = &work->best->index[work->from];
     float T[TILE], CP[3][TILE], *best_T = &work->best->T[work->from];
     hp_pairs_out out = {F, T, {CP[0], CP[1], CP[2]}};
-    uint32_t end = work->first + work->count;
-    for (uint32_t k = work->first, n; k < end; k += n) {
+    uint32_t end = first + count;
+    for (uint32_t k = first, n; k < end; k += n) {
         n = end - k < TILE ? end - k : TILE;
         work->job->pipe->pairs(hp_query_primary(query, work->from), 0, secondary_block(work, k), n,
                                query->moved ? query->matrix : NULL, work->job->config->subnormals == HP_FLUSH, &out);
@@ -47,18 +60,19 @@ static void test_one(const slice *work) {
             if (!F[i] || T[i] >= *best_T) continue;
             *best_T = T[i];
             *index = k + i;
-            if (query->mode == HP_MODE_ANY) return;
+            if (query->mode == HP_MODE_ANY) return false;
         }
     }
+    return true;
 }
 
-static void test_blocks(const slice *work) {
+static void test_blocks(const slice *work, uint32_t first, uint32_t count) {
     const hp_query *query = work->query;
     const hp_wide_pipe *pipe = work->job->pipe;
     bool flush = work->job->config->subnormals == HP_FLUSH;
     _Alignas(64) float prepared[HP_BLOCK * HP_PREPARED_MAX];
-    uint32_t end = work->first + work->count;
-    for (uint32_t k = work->first, n; k < end; k += n) {
+    uint32_t end = first + count;
+    for (uint32_t k = first, n; k < end; k += n) {
         n = end - k < HP_BLOCK ? end - k : HP_BLOCK;
         pipe->prepare(secondary_block(work, k), n, query->moved ? query->matrix : NULL, flush, prepared);
         (query->mode == HP_MODE_ANY ? pipe->any : pipe->closest)(&query->lanes, work->from, work->to, prepared, n, k,
@@ -67,27 +81,25 @@ static void test_blocks(const slice *work) {
 }
 
 static void *test_slice(void *context) {
-    const slice *work = context;
-    if (work->to - work->from == 1)
-        test_one(work);
-    else
-        test_blocks(work);
+    slice *work = context;
+    uint32_t first, count;
+    while (take_portion(work, &first, &count)) {
+        if (work->to - work->from > 1)
+            test_blocks(work, first, count);
+        else if (!test_one(work, first, count))
+            break;
+    }
     return NULL;
 }
 
-/* The part of a thread. closest: a range of secondaries, so that each is prepared once; any: a range of primaries, so
- * that none is tested further than to its first hit. */
-static slice slice_of(const hp_results_job *job, const hp_query *query, unsigned i, unsigned threads, hp_best *best) {
-    slice s = {.job = job, .query = query, .to = query->active, .count = query->count, .best = best};
-    if (query->mode == HP_MODE_ANY) {
-        unsigned steps = (query->active + LANES_STEP - 1) / LANES_STEP;
-        unsigned to = (i + 1) * steps / threads * LANES_STEP;
-        s.from = i * steps / threads * LANES_STEP;
-        s.to = to < query->active ? to : query->active;
-    } else {
-        s.first = (uint32_t)((uint64_t)query->count * i / threads);
-        s.count = (uint32_t)((uint64_t)query->count * (i + 1) / threads) - s.first;
-    }
+/* The part of a thread. closest: all primaries, and portions of secondaries, so that each is prepared once; any: a
+ * range of primaries and all secondaries, so that none is tested further than to its first hit. */
+static slice slice_of(const hp_results_job *job, const hp_query *query, unsigned i, unsigned threads) {
+    slice s = {.job = job, .query = query, .to = query->active};
+    if (query->mode != HP_MODE_ANY) return s;
+    unsigned steps = (query->active + LANES_STEP - 1) / LANES_STEP, to = (i + 1) * steps / threads * LANES_STEP;
+    s.from = i * steps / threads * LANES_STEP;
+    s.to = to < query->active ? to : query->active;
     return s;
 }
 
@@ -98,12 +110,13 @@ static void clear(hp_best *best) {
     }
 }
 
-/* `later` comes of higher secondaries, so it wins only where it is closer. */
-static void merge(hp_best *best, const hp_best *later) {
+/* The closer of what two threads found, of equals the one of lower index. */
+static void merge(hp_best *best, const hp_best *other) {
     for (unsigned i = 0; i < HP_PACKET_PRIMARIES; i++) {
-        if (!(later->T[i] < best->T[i])) continue;
-        best->T[i] = later->T[i];
-        best->index[i] = later->index[i];
+        bool closer = other->T[i] < best->T[i] || (other->T[i] == best->T[i] && other->index[i] < best->index[i]);
+        if (!closer) continue;
+        best->T[i] = other->T[i];
+        best->index[i] = other->index[i];
     }
 }
 
@@ -118,10 +131,13 @@ static void test_all(const hp_results_job *job, const hp_query *query, hp_best *
     hp_best bests[THREADS_MAX];
     slice slices[THREADS_MAX];
     unsigned threads = threads_for(job, query);
-    bool shared = query->mode == HP_MODE_ANY; /* primaries apart: one hp_best serves all */
+    atomic_uint_fast64_t next = 0;
+    bool apart = query->mode == HP_MODE_ANY; /* primaries apart: one hp_best serves all */
     for (unsigned i = 0; i < threads; i++) {
-        if (i == 0 || !shared) clear(&bests[i]);
-        slices[i] = slice_of(job, query, i, threads, &bests[shared ? 0 : i]);
+        if (i == 0 || !apart) clear(&bests[i]);
+        slices[i] = slice_of(job, query, i, threads);
+        slices[i].best = &bests[apart ? 0 : i];
+        slices[i].next = apart ? &slices[i].all : &next;
     }
     for (unsigned i = 1; i < threads; i++)
         slices[i].started = pthread_create(&slices[i].thread, NULL, test_slice, &slices[i]) == 0;
@@ -130,7 +146,7 @@ static void test_all(const hp_results_job *job, const hp_query *query, hp_best *
     for (unsigned i = 1; i < threads; i++)
         if (slices[i].started) pthread_join(slices[i].thread, NULL);
     *best = bests[0];
-    for (unsigned i = 1; i < threads && !shared; i++) merge(best, &bests[i]);
+    for (unsigned i = 1; i < threads && !apart; i++) merge(best, &bests[i]);
 }
 
 /* The whole record of a pair, by the scalar pipe. */
