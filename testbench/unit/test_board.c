@@ -127,7 +127,7 @@ static void answers_are_folds_over_the_scalar_pipe(void **state) {
  * threads find equal keys and the lower index must win. */
 static void threads_do_not_change_answers(void **state) {
     (void)state;
-    enum { MANY = 4000, PACKET = 250 };
+    enum { MANY = 20000, PACKET = 250 };
     float *scene = malloc(MANY * HP_TRIANGLE_WORDS * sizeof *scene), packet[PACKET * HP_RAY_WORDS];
     assert_non_null(scene);
     hpt_triangles(9, MANY / 2, 1, scene);
@@ -137,7 +137,8 @@ static void threads_do_not_change_answers(void **state) {
         hpt_script script = {0};
         hpt_query query = hpt_query_all(mode, MANY, PACKET, packet);
         hpt_hello(&script);
-        hpt_upload(&script, HP_TRIANGLE, 0, MANY, scene);
+        hpt_upload(&script, HP_TRIANGLE, 0, MANY / 2, scene);
+        hpt_upload(&script, HP_TRIANGLE, MANY / 2, MANY / 2, scene + MANY / 2 * HP_TRIANGLE_WORDS);
         hpt_ask(&script, &query);
         hp_result *first = NULL;
         for (unsigned threads = 1; threads <= 7; threads += 2) {
