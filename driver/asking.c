@@ -63,9 +63,19 @@ static hp_status check_primaries(const hp_asking *asking) {
     return HP_OK;
 }
 
-hp_status hp_check_asking(hp_asking *asking) {
-    if (!asking->def) return hp_say(&asking->device->message, HP_ERROR_USAGE, "no query def");
-    hp_status status = check_def(asking);
+hp_status hp_begin_asking(hp_asking *asking, hp_device *device, const hp_query_def *def, const float *primaries,
+                          size_t n, hp_take_answer *take) {
+    if (!device) return HP_ERROR_USAGE;
+    hp_status status = hp_begin(device);
+    if (status) return status;
+    if (!def) return hp_say(&device->message, HP_ERROR_USAGE, "no query def");
+    asking->device = device;
+    asking->def = def;
+    asking->primaries = primaries;
+    asking->n = n;
+    asking->take = take;
+    asking->answered = 0;
+    status = check_def(asking);
     if (!status) status = check_secondaries(asking);
     if (!status) status = check_primaries(asking);
     if (status) return status;

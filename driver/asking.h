@@ -29,8 +29,10 @@ typedef struct hp_asking {
     hp_part parts[HP_WINDOW_MAX]; /* by slot */
 } hp_asking;
 
-/* Checks def and primaries, and fills in packet and secondaries. Nothing is sent. */
-hp_status hp_check_asking(hp_asking *asking);
+/* Begins a call: settles what an earlier one left, checks def and primaries, and fills in all but whom the answers
+ * are for. No query is sent. HP_ERROR_USAGE for a device that is NULL. */
+hp_status hp_begin_asking(hp_asking *asking, hp_device *device, const hp_query_def *def, const float *primaries,
+                          size_t n, hp_take_answer *take);
 
 /* Asks for all primaries and waits for the answers. */
 hp_status hp_ask_all(hp_asking *asking);

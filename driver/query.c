@@ -38,19 +38,10 @@ static hp_status take_results(hp_command *command, const uint8_t *payload, uint3
 }
 
 hp_status hp_query(hp_device *device, const hp_query_def *def, const float *primaries, size_t n, hp_result *results) {
-    if (!device) return HP_ERROR_USAGE;
-    hp_status status = hp_begin(device);
-    if (status) return status;
     hp_asking asking;
-    asking.device = device;
-    asking.def = def;
-    asking.primaries = primaries;
-    asking.n = n;
-    asking.take = take_results;
-    asking.answered = 0;
-    asking.results = results;
-    status = hp_check_asking(&asking);
+    hp_status status = hp_begin_asking(&asking, device, def, primaries, n, take_results);
     if (status) return status;
+    asking.results = results;
     if (def->mode == HP_MODE_ALL)
         return hp_say(&device->message, HP_ERROR_USAGE, "mode all goes through hp_query_all");
     if (n && !results) return hp_say(&device->message, HP_ERROR_USAGE, "no place for the results");

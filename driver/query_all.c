@@ -80,19 +80,10 @@ static hp_status make_batch(hp_device *device) {
 
 hp_status hp_query_all(hp_device *device, const hp_query_def *def, const float *primaries, size_t n,
                        hp_records_taker *take, void *context) {
-    if (!device) return HP_ERROR_USAGE;
-    hp_status status = hp_begin(device);
-    if (status) return status;
     hp_asking asking;
-    asking.device = device;
-    asking.def = def;
-    asking.primaries = primaries;
-    asking.n = n;
-    asking.take = take_records;
-    asking.answered = 0;
+    hp_status status = hp_begin_asking(&asking, device, def, primaries, n, take_records);
     asking.taker = take;
     asking.context = context;
-    status = hp_check_asking(&asking);
     if (!status && def->mode != HP_MODE_ALL)
         status = hp_say(&device->message, HP_ERROR_USAGE, "hp_query_all is for mode all");
     if (!status && !take) status = hp_say(&device->message, HP_ERROR_USAGE, "nobody takes the records");
