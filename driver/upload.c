@@ -52,7 +52,7 @@ static hp_status send_chunk(upload *up) {
     hp_put32(command->payload + HP_AT_UPLOAD_first, (uint32_t)up->sent);
     hp_put32(command->payload + HP_AT_UPLOAD_count, (uint32_t)count);
     hp_put32(command->payload + HP_AT_UPLOAD_reserved, 0);
-    hp_put_words(command->payload + HP_UPLOAD_FIXED, up->words + up->sent * n, count * n);
+    if (count) hp_put_words(command->payload + HP_UPLOAD_FIXED, up->words + up->sent * n, count * n);
     hp_queue_post(&up->device->queue, command);
     up->sent += count;
     return HP_OK;
