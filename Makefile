@@ -32,7 +32,8 @@ FUZZ_SRC := $(wildcard testbench/fuzz/fuzz_*.c)
 BENCH_SRC := $(wildcard testbench/bench/bench_*.c)
 TOOL_SRC := $(wildcard testbench/tools/*.c)
 
-# wide.c once per instruction set; the flags of each
+# wide.c once per pipe and instruction set; the flags of each
+PIPES := $(filter-out every,$(notdir $(patsubst %.pipe.h,%,$(wildcard rtl_model/pipes/*.pipe.h))))
 ifeq ($(ARCH),x86_64)
 ISAS := plain sse2 avx2 avx512
 else ifeq ($(ARCH),aarch64)
@@ -62,7 +63,7 @@ LIBS_LIB  := -lm -pthread
 LIBS_HOST = -lOpenEXRCore $(shell pkg-config --libs jansson libpng assimp 2>/dev/null || echo -ljansson -lpng -lassimp)
 LIBS_TEST := -lcmocka -lgmp
 
-LIB_OBJ  := $(LIB_SRC:%.c=$(BUILD)/%.o) $(ISAS:%=$(BUILD)/rtl_model/pipes/wide_%.o)
+LIB_OBJ  := $(LIB_SRC:%.c=$(BUILD)/%.o) $(foreach i,$(ISAS),$(PIPES:%=$(BUILD)/rtl_model/pipes/wide_$i/%.o))
 HOST_OBJ := $(HOST_SRC:%.c=$(BUILD)/%.o)
 HOST_LIB_OBJ := $(filter-out $(BUILD)/host/cli/main.o,$(HOST_OBJ))
 SUPPORT_OBJ := $(SUPPORT_SRC:%.c=$(BUILD)/%.o)
@@ -81,9 +82,13 @@ all: $(HITPIPE) $(SHLIB) ## build program and library
 help: ## list these targets
 	@grep -hE '^[a-z-]+:.*## ' Makefile mk/*.mk | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 16
 
-$(BUILD)/rtl_model/pipes/wide_%.o: rtl_model/pipes/wide.c
-	$(call say,CC)mkdir -p $(@D)
-	$(run)$(CC) $(ALL_CFLAGS) $(ISA_FLAGS_$*) -DHP_WIDE_ISA_$*=1 -DHP_WIDE_ISA=$* -c $< -o $@
+define WIDE
+$(BUILD)/rtl_model/pipes/wide_$1/%.o: rtl_model/pipes/wide.c
+	$$(call say,CC)mkdir -p $$(@D)
+	$$(run)$$(CC) $$(ALL_CFLAGS) $$(ISA_FLAGS_$1) -DHP_WIDE_ISA_$1=1 -DHP_WIDE_ISA=$1 -DHP_PIPE=$$* \
+	    -DHP_PIPE_FILE='"rtl_model/pipes/$$*.pipe.h"' -c $$< -o $$@
+endef
+$(foreach i,$(ISAS),$(eval $(call WIDE,$i)))
 
 $(BUILD)/host/%.o: host/%.c
 	$(call say,CC)mkdir -p $(@D)
@@ -91,7 +96,7 @@ $(BUILD)/host/%.o: host/%.c
 
 $(BUILD)/%.o: %.c
 	$(call say,CC)mkdir -p $(@D)
-	$(run)$(CC) $(ALL_CFLAGS) -DHP_WIDE_ISAS="$(foreach i,$(ISAS),X($(i)))" -c $< -o $@
+	$(run)$(CC) $(ALL_CFLAGS) '-DHP_WIDE_ISAS(X,n,N)=$(foreach i,$(ISAS),X($(i),n,N))' -c $< -o $@
 
 $(LIB): $(LIB_OBJ)
 	$(call say,AR)rm -f $@

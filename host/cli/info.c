@@ -67,7 +67,7 @@ static const hp_pair pairs[] = {
 enum { PAIR_COUNT = sizeof pairs / sizeof pairs[0] };
 
 static json_t *pipe_json(hp_pair pair, const hp_config *board) {
-    hp_pipe_cost cost = hp_pipe_cost_of(pair, board);
+    hp_pipe_cost cost = hp_pipe_cost_of(pair, false, board);
     json_t *pipe = json_object();
     hp_report_set(pipe, "pair", json_string(hp_pair_name(pair)));
     hp_report_set(pipe, "resident", json_boolean(board->pipes >> pair & 1));
@@ -103,7 +103,7 @@ static void print_pipes(const hp_config *board) {
     printf("%-18s %4s %4s %5s %4s %4s %4s %4s %7s %7s %9s\n", "pair", "mul", "div", "sqrt", "add", "sub", "cmp",
            "and", "levels", "clocks", "interval");
     for (size_t i = 0; i < PAIR_COUNT; i++) {
-        hp_pipe_cost cost = hp_pipe_cost_of(pairs[i], board);
+        hp_pipe_cost cost = hp_pipe_cost_of(pairs[i], false, board);
         printf("%-18s %4u %4u %5u %4u %4u %4u %4u %7u %7u %9u%s\n", hp_pair_name(pairs[i]), cost.multipliers,
                cost.dividers, cost.square_roots, cost.adders, cost.subtractors, cost.comparators, cost.ands,
                cost.levels, cost.clocks, cost.interval, board->pipes >> pairs[i] & 1 ? "" : "  (not resident)");

@@ -6,15 +6,15 @@
 
 enum { INBOUND_MOST = 4096 }; /* transfers that may wait for the link to the board */
 
-static void read_costs(hp_board *board) {
-#define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, prepared)                                               \
-    {                                                                                                                \
-        hp_pipe_cost cost = hp_pipe_cost_of(HP_PAIR_##NAME, &board->config);                                         \
-        board->pipe_clocks[code] = cost.clocks > 0 ? cost.clocks : 1;                                                \
-        board->pipe_interval[code] = cost.interval > 0 ? cost.interval : 1;                                          \
-    }
-#include <hitpipe/pairs.def>
-#undef HP_PAIR
+hp_pipe_times hp_board_pipe(hp_board *board, const hp_query *query) {
+    hp_pipe_times *times = &board->pipe_times[query->separation][query->pair];
+    if (times->clocks) return *times;
+    hp_pipe_cost cost = hp_pipe_cost_of(query->pair, query->separation, &board->config);
+    if (cost.levels) *times = (hp_pipe_times){cost.clocks > 0 ? cost.clocks : 1, cost.interval};
+    return *times;
+}
+
+static void read_transformer_costs(hp_board *board) {
 #define HP_OBJECT(name, NAME, code, words, layout)                                                                   \
     board->transformer_clocks[code] = hp_transformer_cost_of(HP_##NAME, &board->config).clocks;
 #include <hitpipe/objects.def>
@@ -38,7 +38,7 @@ static hp_status fill(hp_board *board, const hp_board_def *def) {
     board->answers_end = &board->answers;
     board->packet = malloc(hp_packet_bytes(HP_PAYLOAD_MAX));
     if (!board->packet) return HP_ERROR_MEMORY;
-    read_costs(board);
+    read_transformer_costs(board);
     return board->engine->create(board);
 }
 

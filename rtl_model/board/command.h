@@ -13,7 +13,7 @@ typedef struct hp_session {
     uint32_t present;  /* how many */
     bool moved;        /* the transformer is on */
     float matrix[12];
-    hp_pair selected; /* pipe of the last query, 0: none */
+    unsigned selected; /* hp_selection of the last query, 0: none */
 } hp_session;
 
 typedef struct hp_command {

@@ -58,12 +58,17 @@ static bool stencil_runs_over(const uint8_t *stencil, unsigned primaries) {
     return false;
 }
 
+/* Nearest is a way of keeping one result, so only mode closest has it. */
+static bool options_fit(uint32_t mode, uint32_t options) {
+    return !(options & ~(uint32_t)HP_OPTIONS_ALL) && (!(options & HP_OPTION_NEAREST) || mode == HP_MODE_CLOSEST);
+}
+
 static verdict check_query(const hp_config *config, const hp_session *session, const uint8_t *payload) {
     uint32_t pair = hp_get32(payload + HP_AT_QUERY_pair), mode = hp_get32(payload + HP_AT_QUERY_mode);
     uint64_t first = hp_get32(payload + HP_AT_QUERY_first), count = hp_get32(payload + HP_AT_QUERY_count);
     uint32_t primaries = hp_get32(payload + HP_AT_QUERY_primaries);
     if (!hp_mode_name((hp_mode)mode)) return field(AT(QUERY, mode));
-    if (hp_get32(payload + HP_AT_QUERY_options)) return field(AT(QUERY, options));
+    if (!options_fit(mode, hp_get32(payload + HP_AT_QUERY_options))) return field(AT(QUERY, options));
     if (primaries < 1 || primaries > config->packet_primaries) return field(AT(QUERY, primaries));
     if (mode == HP_MODE_ZIP && count != primaries) return field(AT(QUERY, count));
     if (any_byte(payload + HP_AT_QUERY_reserved, 8)) return field(AT(QUERY, reserved));

@@ -22,6 +22,11 @@ typedef struct hp_held {
     _Alignas(16) uint8_t bytes[];
 } hp_held;
 
+/* Of one pipe, read off its operator graph. */
+typedef struct hp_pipe_times {
+    unsigned clocks, interval; /* 0: not read yet */
+} hp_pipe_times;
+
 struct hp_board {
     hp_config config;
     hp_board_def def;
@@ -29,8 +34,8 @@ struct hp_board {
     void *state; /* the engine's own */
     const char *isa;
     unsigned threads;
-    unsigned pipe_clocks[32], pipe_interval[32]; /* by pair */
-    unsigned transformer_clocks[HP_PLANE + 1];   /* by object */
+    hp_pipe_times pipe_times[2][32];           /* by separation and pair; of those that were used */
+    unsigned transformer_clocks[HP_PLANE + 1]; /* by object */
     hp_session session;
     hp_ddr ddr;
     hp_inbound *inbound, **inbound_end;
@@ -48,6 +53,15 @@ struct hp_board {
     size_t sent_bytes;
 };
 
+/* The times of the query's pipe, with what it was asked for. Read when a pipe is first used: a pipe that is not used
+ * costs nothing. Clocks 0: out of memory. */
+hp_pipe_times hp_board_pipe(hp_board *board, const hp_query *query);
+
+/* What the selector has selected for a query. With and without separation are two pipes to it. */
+static inline unsigned hp_selection(const hp_query *query) {
+    return (unsigned)query->pair << 1 | query->separation;
+}
+
 /* ---- what happens at the start of a clock ---- */
 
 /* The oldest transfer of the host has arrived; so has the oldest answer. */
@@ -60,6 +74,8 @@ void hp_board_answered(hp_board *board);
 void hp_command_begin(hp_board *board);
 /* Ends it: the answer becomes known, counters are cleared, the packet's buffer is free. */
 void hp_command_end(hp_board *board);
+/* There is no memory to carry out the query: the command becomes an ERROR. */
+void hp_query_refuse(hp_board *board);
 /* Objects in an UPLOAD's payload, and its first. */
 uint32_t hp_upload_count(const hp_command *command);
 uint32_t hp_upload_first(const hp_command *command);

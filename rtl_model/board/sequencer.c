@@ -40,6 +40,13 @@ static hp_status begin_query(hp_board *board) {
     return HP_OK;
 }
 
+void hp_query_refuse(hp_board *board) {
+    hp_query_release(board->query);
+    board->query = NULL;
+    board->command.opcode = HP_OPCODE_ERROR;
+    board->command.status = HP_ERROR_MEMORY;
+}
+
 void hp_command_begin(hp_board *board) {
     hp_command *command = &board->command;
     hp_status status = HP_OK;

@@ -107,6 +107,10 @@ hp_object hp_pair_secondary(hp_pair pair) {
     return (hp_object)0;
 }
 
+bool hp_pair_keeps_deepest(hp_pair pair) {
+    return hp_pair_primary(pair) != HP_RAY;
+}
+
 hp_pair hp_pair_from_name(const char *name) {
 #define HP_PAIR(lower, NAME, code, typed, PRIMARY, SECONDARY, prepared)                                              \
     if (strcmp(name, typed) == 0) return HP_PAIR_##NAME;

@@ -20,31 +20,25 @@ static void begin_streaming(hp_board *board) {
     c->activity = !c->selector.over ? HP_ACTIVITY_TESTS : ends ? HP_ACTIVITY_ENDED : HP_ACTIVITY_FLUSH;
 }
 
-static void refuse_query(hp_board *board) {
-    hp_query_release(board->query);
-    board->query = NULL;
-    board->command.opcode = HP_OPCODE_ERROR;
-    board->command.status = HP_ERROR_MEMORY;
-}
-
 static void begin_query(hp_board *board) {
     hp_clocked *c = board->state;
     hp_query *query = board->query;
     c->total = hp_query_records(query);
-    if (hp_sram_reserve(&c->sram, c->sram.count + c->total) != HP_OK) {
-        refuse_query(board);
+    hp_pipe_times pipe = hp_board_pipe(board, query);
+    if (!pipe.clocks || hp_sram_reserve(&c->sram, c->sram.count + c->total) != HP_OK ||
+        hp_delay_line_begin(&c->pipe, pipe.clocks, (unsigned)board->config.lanes) != HP_OK) {
+        hp_query_refuse(board);
         return;
     }
-    hp_selector_begin(&c->selector, query, &board->config, board->pipe_interval[query->pair]);
+    hp_selector_begin(&c->selector, query, &board->config, pipe.interval);
     hp_secondary_begin(&c->secondary, query, hp_selector_sweeps(&c->selector),
                        board->transformer_clocks[query->secondary]);
-    hp_delay_line_begin(&c->pipe, board->pipe_clocks[query->pair]);
     hp_update_begin(&c->update, query);
     c->flushed = c->output_left = 0;
     c->written = c->known = c->tests_run = 0;
     c->query_start = board->clock;
-    bool other = board->session.selected != query->pair;
-    board->session.selected = query->pair;
+    bool other = board->session.selected != hp_selection(query);
+    board->session.selected = hp_selection(query);
     c->activity = HP_ACTIVITY_SELECT;
     c->left = other ? board->config.selector_clocks : 0;
     if (c->left == 0) begin_streaming(board);
@@ -115,7 +109,7 @@ static uint64_t tick_update(hp_clocked *c) {
     const hp_stage *output = &c->pipe.output;
     if (!output->valid) return 0;
     c->updated = true;
-    return hp_update_take(&c->update, output->first, output->lanes, output->tested, output->results);
+    return hp_update_take(&c->update, output->first, output->lanes, output->tested, output->index, output->results);
 }
 
 static void issue_test(hp_board *board) {
@@ -126,12 +120,13 @@ static void issue_test(hp_board *board) {
     stage->valid = true;
     stage->first = hp_selector_first(&c->selector);
     stage->lanes = hp_selector_size(&c->selector);
+    stage->index = secondary->index;
     stage->tested = 0;
     for (unsigned lane = 0; lane < stage->lanes; lane++) {
         unsigned primary = stage->first + lane;
         if (c->selector.stopped[primary]) continue;
         stage->tested |= UINT64_C(1) << lane;
-        stage->results[lane] = hp_pipe_test(query->pair, (hp_subnormals)board->config.subnormals,
+        stage->results[lane] = hp_pipe_test(query->pair, (hp_subnormals)board->config.subnormals, query->separation,
                                             hp_query_primary(query, primary), secondary->words, secondary->index);
         c->tests_run++;
         board->counters.tests_run++;
@@ -368,18 +363,13 @@ static hp_status clocked_settle(hp_board *board) {
 }
 
 static hp_status clocked_create(hp_board *board) {
-    unsigned latency = 1;
-    for (unsigned pair = 0; pair < 32; pair++)
-        if (board->pipe_clocks[pair] > latency) latency = board->pipe_clocks[pair];
     hp_clocked *c = calloc(1, sizeof *c);
     if (!c) return HP_ERROR_MEMORY;
     board->state = c;
     c->ddr = hp_controller_reset(&board->config);
     c->sram.capacity = board->config.sram_records;
     if (board->def.vcd && !(c->vcd = hp_vcd_create(board))) return HP_ERROR_MEMORY;
-    hp_status secondary = hp_secondary_create(&c->secondary, &board->config, &board->ddr);
-    hp_status pipe = hp_delay_line_create(&c->pipe, latency, (unsigned)board->config.lanes);
-    return secondary != HP_OK ? secondary : pipe;
+    return hp_secondary_create(&c->secondary, &board->config, &board->ddr);
 }
 
 static void clocked_destroy(hp_board *board) {

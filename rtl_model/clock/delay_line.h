@@ -8,6 +8,7 @@
 typedef struct hp_stage {
     bool valid;
     unsigned first, lanes; /* active primaries tested */
+    uint32_t index;        /* the secondary */
     uint64_t tested;       /* bit set: the lane is a test */
     hp_result *results;    /* of the lanes; the delay line's */
 } hp_stage;
@@ -15,13 +16,14 @@ typedef struct hp_stage {
 typedef struct hp_delay_line {
     hp_stage *stages;   /* ring of latency - 1, and one more that is on its way in */
     hp_result *results; /* room of all stages and of the output register */
+    unsigned room;      /* stages */
     unsigned length, at, inside;
     hp_stage output; /* the output register */
 } hp_delay_line;
 
-hp_status hp_delay_line_create(hp_delay_line *line, unsigned latency_max, unsigned lanes);
+/* Empties the line and gives it a length. A line of zeros is one without room yet; `lanes` is always the same. */
+hp_status hp_delay_line_begin(hp_delay_line *line, unsigned latency, unsigned lanes);
 void hp_delay_line_free(hp_delay_line *line);
-void hp_delay_line_begin(hp_delay_line *line, unsigned latency);
 
 /* Where a test that enters in this clock is to be written; `valid` is false when none does. */
 static inline hp_stage *hp_delay_line_entry(hp_delay_line *line) {

@@ -40,10 +40,15 @@ static void begin_query(hp_board *board) {
     hp_query *query = board->query;
     hp_results_job job = results_job(board, query);
     uint32_t *hit = query->mode == HP_MODE_ANY ? q->hit : NULL;
+    hp_pipe_times pipe = hp_board_pipe(board, query);
+    hp_stream_timing timing = {board->clock, board->session.selected != hp_selection(query), pipe.clocks,
+                               pipe.interval, board->transformer_clocks[query->secondary]};
+    if (!pipe.clocks || hp_stream_reserve(&q->stream, pipe.clocks) != HP_OK) {
+        hp_query_refuse(board);
+        return;
+    }
     if (query->mode != HP_MODE_ALL) hp_results_find(&job, query, hit);
-    hp_stream_timing timing = {board->clock, board->session.selected != query->pair, board->pipe_clocks[query->pair],
-                               board->pipe_interval[query->pair], board->transformer_clocks[query->secondary]};
-    board->session.selected = query->pair;
+    board->session.selected = hp_selection(query);
     hp_stream_begin(&q->stream, query, hit, timing, &q->sram);
 }
 
@@ -230,14 +235,11 @@ static hp_status quick_settle(hp_board *board) {
 }
 
 static hp_status quick_create(hp_board *board) {
-    uint64_t latency = 1;
-    for (unsigned pair = 0; pair < 32; pair++)
-        if (board->pipe_clocks[pair] > latency) latency = board->pipe_clocks[pair];
     quick *q = calloc(1, sizeof *q);
     if (!q) return HP_ERROR_MEMORY;
     board->state = q;
     q->ddr = hp_ddr_runs_reset(&board->config);
-    return hp_stream_create(&q->stream, &board->config, latency);
+    return hp_stream_create(&q->stream, &board->config);
 }
 
 static void quick_destroy(hp_board *board) {

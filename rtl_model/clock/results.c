@@ -1,4 +1,5 @@
 #include "results.h"
+#include "rtl_model/update/update.h"
 #include <hitpipe/pipe.h>
 #include <math.h>
 #include <pthread.h>
@@ -12,6 +13,11 @@ enum {
     PORTION = 8 * HP_BLOCK, /* secondaries a thread takes at a time */
     TILE = 64               /* secondaries at a time where they lie in the lanes */
 };
+
+/* Without the distance of a miss, no miss is nearer than another. */
+static bool looks_for_nearest(const hp_query *query) {
+    return query->nearest && query->separation;
+}
 
 static hp_result miss(void) {
     return (hp_result){.F = 0, .index = HP_NO_INDEX, .T = INFINITY, .CP = {0, 0, 0}, .stencil = 1};
@@ -45,21 +51,46 @@ static const float *secondary_block(const slice *work, uint32_t k) {
     return hp_ddr_object(work->job->ddr, work->query->secondary, (uint64_t)work->query->first + k);
 }
 
+/* What mode closest has kept for a primary so far. */
+static hp_result kept_of(const hp_query *query, const hp_best *best, unsigned i) {
+    bool found = best->index[i] != HP_NO_INDEX;
+    return (hp_result){.F = looks_for_nearest(query) ? best->F[i] : found, .T = found ? best->T[i] : INFINITY};
+}
+
+typedef void pairs_function(const float *primaries, unsigned primary_step, const float *secondaries, size_t n,
+                            const float *matrix, bool flush, const hp_pairs_out *out);
+
+static pairs_function *pairs_kernel(const hp_results_job *job, const hp_query *query) {
+    bool shows = hp_query_records_tests(query) || looks_for_nearest(query);
+    return query->separation && shows ? job->pipe->distances : job->pipe->pairs;
+}
+
+typedef void keeping_function(const hp_lanes *lanes, unsigned from, unsigned to, const float *prepared, size_t n,
+                              uint32_t index, bool flush, hp_best *best);
+
+static keeping_function *keeping_kernel(const hp_results_job *job, const hp_query *query) {
+    if (query->mode == HP_MODE_ANY) return job->pipe->any;
+    return looks_for_nearest(query) ? job->pipe->nearest : job->pipe->closest;
+}
+
 /* A primary alone would leave most lanes empty: here the lanes are secondaries. Returns whether it looks for more. */
 static bool test_one(const slice *work, uint32_t first, uint32_t count) {
     const hp_query *query = work->query;
-    uint32_t F[TILE], *index = &work->best->index[work->from];
-    float T[TILE], CP[3][TILE], *best_T = &work->best->T[work->from];
+    uint32_t F[TILE];
+    float T[TILE], CP[3][TILE];
     hp_pairs_out out = {F, T, {CP[0], CP[1], CP[2]}};
     uint32_t end = first + count;
     for (uint32_t k = first, n; k < end; k += n) {
         n = end - k < TILE ? end - k : TILE;
-        work->job->pipe->pairs(hp_query_primary(query, work->from), 0, secondary_block(work, k), n,
-                               query->moved ? query->matrix : NULL, work->job->config->subnormals == HP_FLUSH, &out);
+        pairs_kernel(work->job, query)(hp_query_primary(query, work->from), 0, secondary_block(work, k), n,
+                                       query->moved ? query->matrix : NULL, work->job->config->subnormals == HP_FLUSH,
+                                       &out);
         for (uint32_t i = 0; i < n; i++) {
-            if (!F[i] || T[i] >= *best_T) continue;
-            *best_T = T[i];
-            *index = k + i;
+            hp_result found = {.F = F[i], .T = T[i]}, kept = kept_of(query, work->best, work->from);
+            if (!hp_closer(query, &found, &kept)) continue;
+            work->best->T[work->from] = T[i];
+            work->best->index[work->from] = k + i;
+            work->best->F[work->from] = F[i];
             if (query->mode == HP_MODE_ANY) return false;
         }
     }
@@ -75,8 +106,7 @@ static void test_blocks(const slice *work, uint32_t first, uint32_t count) {
     for (uint32_t k = first, n; k < end; k += n) {
         n = end - k < HP_BLOCK ? end - k : HP_BLOCK;
         pipe->prepare(secondary_block(work, k), n, query->moved ? query->matrix : NULL, flush, prepared);
-        (query->mode == HP_MODE_ANY ? pipe->any : pipe->closest)(&query->lanes, work->from, work->to, prepared, n, k,
-                                                                 flush, work->best);
+        keeping_kernel(work->job, query)(&query->lanes, work->from, work->to, prepared, n, k, flush, work->best);
     }
 }
 
@@ -103,20 +133,16 @@ static slice slice_of(const hp_results_job *job, const hp_query *query, unsigned
     return s;
 }
 
-static void clear(hp_best *best) {
-    for (unsigned i = 0; i < HP_PACKET_PRIMARIES; i++) {
-        best->T[i] = INFINITY;
-        best->index[i] = HP_NO_INDEX;
-    }
-}
-
 /* The closer of what two threads found, of equals the one of lower index. */
-static void merge(hp_best *best, const hp_best *other) {
-    for (unsigned i = 0; i < HP_PACKET_PRIMARIES; i++) {
-        bool closer = other->T[i] < best->T[i] || (other->T[i] == best->T[i] && other->index[i] < best->index[i]);
-        if (!closer) continue;
+static void merge(const hp_query *query, hp_best *best, const hp_best *other) {
+    for (unsigned i = 0; i < query->active; i++) {
+        hp_result mine = kept_of(query, best, i), theirs = kept_of(query, other, i);
+        bool closer = hp_closer(query, &theirs, &mine);
+        bool equal = !closer && !hp_closer(query, &mine, &theirs) && other->index[i] < best->index[i];
+        if (!closer && !equal) continue;
         best->T[i] = other->T[i];
         best->index[i] = other->index[i];
+        best->F[i] = other->F[i];
     }
 }
 
@@ -134,7 +160,7 @@ static void test_all(const hp_results_job *job, const hp_query *query, hp_best *
     atomic_uint_fast64_t next = 0;
     bool apart = query->mode == HP_MODE_ANY; /* primaries apart: one hp_best serves all */
     for (unsigned i = 0; i < threads; i++) {
-        if (i == 0 || !apart) clear(&bests[i]);
+        if (i == 0 || !apart) hp_best_begin(&bests[i], query->pair, looks_for_nearest(query));
         slices[i] = slice_of(job, query, i, threads);
         slices[i].best = &bests[apart ? 0 : i];
         slices[i].next = apart ? &slices[i].all : &next;
@@ -146,7 +172,7 @@ static void test_all(const hp_results_job *job, const hp_query *query, hp_best *
     for (unsigned i = 1; i < threads; i++)
         if (slices[i].started) pthread_join(slices[i].thread, NULL);
     *best = bests[0];
-    for (unsigned i = 1; i < threads && !apart; i++) merge(best, &bests[i]);
+    for (unsigned i = 1; i < threads && !apart; i++) merge(query, best, &bests[i]);
 }
 
 /* The whole record of a pair, by the scalar pipe. */
@@ -158,7 +184,8 @@ static hp_result test_pair(const hp_results_job *job, const hp_query *query, uns
         hp_transform_object(query->secondary, subnormals, query->matrix, secondary, moved);
         secondary = moved;
     }
-    return hp_pipe_test(query->pair, subnormals, hp_query_primary(query, primary), secondary, index);
+    return hp_pipe_test(query->pair, subnormals, query->separation, hp_query_primary(query, primary), secondary,
+                        index);
 }
 
 void hp_results_find(const hp_results_job *job, hp_query *query, uint32_t *hit) {
@@ -172,6 +199,7 @@ void hp_results_find(const hp_results_job *job, hp_query *query, uint32_t *hit) 
     for (unsigned i = 0; i < query->active; i++) {
         bool found = best.index[i] != HP_NO_INDEX;
         query->results[i] = found ? test_pair(job, query, i, query->first + best.index[i]) : miss();
+        if (found) query->results[i].index = query->first + best.index[i];
         if (hit) hit[i] = best.index[i];
         if (hit && found) query->results[i].stencil = 0;
     }
@@ -193,9 +221,9 @@ static void take_primary(const range *r, unsigned primary, uint32_t k, uint32_t 
     float T[TILE], CP[3][TILE];
     const hp_query *query = r->query;
     hp_pairs_out out = {F, T, {CP[0], CP[1], CP[2]}};
-    r->job->pipe->pairs(hp_query_primary(query, primary), 0,
-                        hp_ddr_object(r->job->ddr, query->secondary, (uint64_t)query->first + k), n,
-                        query->moved ? query->matrix : NULL, r->job->config->subnormals == HP_FLUSH, &out);
+    pairs_kernel(r->job, query)(hp_query_primary(query, primary), 0,
+                                hp_ddr_object(r->job->ddr, query->secondary, (uint64_t)query->first + k), n,
+                                query->moved ? query->matrix : NULL, r->job->config->subnormals == HP_FLUSH, &out);
     for (uint32_t i = 0; i < n; i++, number += step) {
         if (number < r->first || number >= r->end) continue;
         hp_result record = {F[i], F[i] ? query->first + k + i : HP_NO_INDEX, T[i], {CP[0][i], CP[1][i], CP[2][i]}, 1};

@@ -6,11 +6,19 @@ static void shorten(stream_run *run, uint64_t clocks) {
     if (clocks < run->clocks) run->clocks = clocks;
 }
 
-hp_status hp_stream_create(hp_stream *stream, const hp_config *config, uint64_t latency_max) {
-    *stream = (hp_stream){.config = config, .tests_room = latency_max + 2};
+hp_status hp_stream_create(hp_stream *stream, const hp_config *config) {
+    *stream = (hp_stream){.config = config};
     stream->objects = malloc((config->secondary_depth + 1) * sizeof *stream->objects);
-    stream->tests = malloc(stream->tests_room * sizeof *stream->tests);
-    return stream->objects && stream->tests ? HP_OK : HP_ERROR_MEMORY;
+    return stream->objects ? HP_OK : HP_ERROR_MEMORY;
+}
+
+hp_status hp_stream_reserve(hp_stream *stream, uint64_t latency) {
+    if (latency + 2 <= stream->tests_room) return HP_OK;
+    hp_test_run *tests = realloc(stream->tests, (latency + 2) * sizeof *tests);
+    if (!tests) return HP_ERROR_MEMORY;
+    stream->tests = tests;
+    stream->tests_room = latency + 2;
+    return HP_OK;
 }
 
 void hp_stream_free(hp_stream *stream) {

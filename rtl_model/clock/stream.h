@@ -74,7 +74,9 @@ typedef struct hp_stream {
 } hp_stream;
 
 /* Buffers for queries on a board of this configuration. HP_ERROR_MEMORY. */
-hp_status hp_stream_create(hp_stream *stream, const hp_config *config, uint64_t latency_max);
+hp_status hp_stream_create(hp_stream *stream, const hp_config *config);
+/* Makes room for a query of a pipe of this latency. HP_ERROR_MEMORY: the stream is as it was. */
+hp_status hp_stream_reserve(hp_stream *stream, uint64_t latency);
 void hp_stream_free(hp_stream *stream);
 
 typedef struct hp_stream_timing {

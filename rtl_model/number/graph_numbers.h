@@ -1,17 +1,21 @@
 /* Number system: the operator graph. A num, a flag and a bits are a node; computing with them adds nodes. No include
- * guard; define HP_MEANING first. A constant belongs to no graph until an operator joins it with a node that does. */
+ * guard; define HP_MEANING first. The graph that grows is the one traced points at. */
 #include "rtl_model/number/graph.h"
 #include "rtl_model/number/names.h"
 
 typedef struct num {
-    hp_graph *graph; /* NULL: a constant */
-    float value;     /* of the constant */
+    bool wired;  /* false: a constant, in the graph once an operator takes it */
+    float value; /* of the constant */
     unsigned node;
 } num;
 typedef num flag;
 typedef num bits;
 
 #define UNLESS_ANY(f) if (false) /* hardware computes everything */
+#define REPEAT(i, n)                                                                                                 \
+    for (unsigned i = hp_graph_repeat(HP_NAMED(traced), n); hp_graph_repeating(HP_NAMED(traced), i, n); i++)
+
+static _Thread_local hp_graph *HP_NAMED(traced);
 
 HP_INLINE num constant(float c) {
     return (num){.value = c};
@@ -25,14 +29,11 @@ HP_INLINE bits constant_bits(uint32_t c) {
 }
 
 HP_INLINE num HP_NAMED(node)(hp_operator operator, unsigned variant, unsigned operands, const num *operand) {
-    hp_graph *graph = NULL;
+    hp_graph *graph = HP_NAMED(traced);
     unsigned node[HP_GRAPH_OPERANDS] = {0};
     for (unsigned i = 0; i < operands; i++)
-        if (operand[i].graph) graph = operand[i].graph;
-    assert(graph);
-    for (unsigned i = 0; i < operands; i++)
-        node[i] = operand[i].graph ? operand[i].node : hp_graph_constant(graph, operand[i].value);
-    return (num){.graph = graph, .node = hp_graph_operator(graph, operator, variant, operands, node)};
+        node[i] = operand[i].wired ? operand[i].node : hp_graph_constant(graph, operand[i].value);
+    return (num){.wired = true, .node = hp_graph_operator(graph, operator, variant, operands, node)};
 }
 
 #define HP_UNARY(name, operator)                                                                                     \
@@ -61,6 +62,7 @@ HP_TERNARY(select, HP_OP_SELECT)
 HP_TERNARY(select_bits, HP_OP_SELECT)
 HP_BINARY(and, HP_OP_AND, 0)
 HP_BINARY(or, HP_OP_OR, 0)
+HP_UNARY(not, HP_OP_NOT)
 HP_UNARY(neg, HP_OP_NEG)
 HP_UNARY(abs, HP_OP_ABS)
 

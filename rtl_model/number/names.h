@@ -36,6 +36,7 @@
 #define select_bits HP_NAMED(select_bits)
 #define and HP_NAMED(and)
 #define or HP_NAMED(or)
+#define not HP_NAMED(not )
 #define neg HP_NAMED(neg)
 #define abs HP_NAMED(abs)
 
@@ -46,9 +47,14 @@
 #define add3 HP_NAMED(add3)
 #define sub3 HP_NAMED(sub3)
 #define scale3 HP_NAMED(scale3)
+#define neg3 HP_NAMED(neg3)
+#define select3 HP_NAMED(select3)
 #define cross HP_NAMED(cross)
 #define dot HP_NAMED(dot)
+#define length HP_NAMED(length)
+#define clamp HP_NAMED(clamp)
 #define answer_of HP_NAMED(answer_of)
+#define answer_with HP_NAMED(answer_with)
 #define miss HP_NAMED(miss)
 
 #endif

@@ -1,5 +1,7 @@
 /* The operators that C's own say, for a number system whose num is one C number. No include guard. */
 
+#define REPEAT(i, n) for (unsigned i = 0; i < (n); i++)
+
 HP_INLINE flag less(num a, num b) {
     return a < b;
 }
@@ -23,6 +25,9 @@ HP_INLINE flag and (flag a, flag b) {
 }
 HP_INLINE flag or (flag a, flag b) {
     return a || b;
+}
+HP_INLINE flag not(flag a) {
+    return !a;
 }
 HP_INLINE num neg(num a) {
     return -a;

@@ -10,9 +10,11 @@
  *   min(a, b)                  less(a, b) ? a : b     One comparator and two multiplexers make both. So min of
  *   max(a, b)                  less(a, b) ? b : a     equal numbers is b, max is a, and with a NaN likewise.
  *   select(f, a, b)            f ? a : b
- *   and or neg abs             gates and wires; neg and abs touch the sign bit only
+ *   and or not neg abs         gates and wires; neg and abs touch the sign bit only
  *   UNLESS_ANY(f)              "if (no lane has f)": a short cut for programs, which leaves the hardware as it is.
  * What it skips may only be what cannot change the answer.
+ *   REPEAT(i, n)               a loop of n steps, n a literal: one piece of hardware that is used n times a test.
+ * The pipe's interval is then n (nested loops multiply), and an operator of the body counts once.
  *
  * Underflow: in a number system that flushes, a num is never subnormal: words are flushed where they enter, results
  * where they arise. That is what operators that flush operands and results do. */
@@ -57,6 +59,14 @@ HP_INLINE vec3 scale3(num s, vec3 a) {
     return (vec3){mul(s, a.x), mul(s, a.y), mul(s, a.z)};
 }
 
+HP_INLINE vec3 neg3(vec3 a) {
+    return (vec3){neg(a.x), neg(a.y), neg(a.z)};
+}
+
+HP_INLINE vec3 select3(flag f, vec3 a, vec3 b) {
+    return (vec3){select(f, a.x, b.x), select(f, a.y, b.y), select(f, a.z, b.z)};
+}
+
 HP_INLINE vec3 cross(vec3 a, vec3 b) {
     return (vec3){sub(mul(a.y, b.z), mul(a.z, b.y)), sub(mul(a.z, b.x), mul(a.x, b.z)),
                   sub(mul(a.x, b.y), mul(a.y, b.x))};
@@ -66,14 +76,27 @@ HP_INLINE num dot(vec3 a, vec3 b) {
     return add(add(mul(a.x, b.x), mul(a.y, b.y)), mul(a.z, b.z));
 }
 
-/* The output multiplexers: what a hit computed, or the fixed answer of a miss. */
-HP_INLINE answer answer_of(flag F, bits index, num T, vec3 CP) {
+HP_INLINE num length(vec3 a) {
+    return sqrt(dot(a, a));
+}
+
+HP_INLINE num clamp(num x, num low, num high) {
+    return min(max(x, low), high);
+}
+
+/* The output multiplexers: what a hit computed, or the answer of a miss: its distance and nothing else. */
+HP_INLINE answer answer_with(flag F, bits index, num T, num distance, vec3 CP) {
     num zero = constant(0);
     return (answer){.F = F,
                     .index = select_bits(F, index, constant_bits(HP_NO_INDEX)),
-                    .T = select(F, T, constant(INFINITY)),
+                    .T = select(F, T, distance),
                     .CP = {select(F, CP.x, zero), select(F, CP.y, zero), select(F, CP.z, zero)},
                     .any = true};
+}
+
+/* The same for a pipe that was not asked for the distance of a miss. */
+HP_INLINE answer answer_of(flag F, bits index, num T, vec3 CP) {
+    return answer_with(F, index, T, constant(INFINITY), CP);
 }
 
 /* The answer when every lane misses. */

@@ -80,6 +80,7 @@ HP_LIFT3(num, select, v_select, num)
 HP_LIFT3(bits, select_bits, v_select_bits, bits)
 HP_LIFT2(flag, and, v_and, flag)
 HP_LIFT2(flag, or, v_or, flag)
+HP_LIFT1(flag, not, v_not, flag)
 HP_LIFT1(num, neg, v_neg, num)
 HP_LIFT1(num, abs, v_abs, num)
 HP_LIFT2(flag, HP_NAMED(same_bits), v_same_bits, bits)
@@ -123,5 +124,6 @@ HP_INLINE bool HP_NAMED(any)(flag f) {
 }
 
 #define UNLESS_ANY(f) if (__builtin_expect(!HP_NAMED(any)(f), 1))
+#define REPEAT(i, n) for (unsigned i = 0; i < (n); i++)
 
 #include "rtl_model/number/vocabulary.h"

@@ -1,8 +1,8 @@
 /* What pipes and transformer cost: their texts carried out on the operator graph. */
 #include "rtl_model/pipes/wide.h"
-#include <assert.h>
 #include <hitpipe/pipe.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define HP_MEANING graph
@@ -12,50 +12,60 @@
 #include "rtl_model/transformer/transformer.pipe.h"
 
 static void take_inputs(hp_graph *g, unsigned n, num *in) {
-    for (unsigned i = 0; i < n; i++) in[i] = (num){.graph = g, .node = hp_graph_input(g)};
+    for (unsigned i = 0; i < n; i++) in[i] = (num){.wired = true, .node = hp_graph_input(g)};
 }
 
 /* Clocks until the number is there that an output multiplexer passes on in a hit. */
-static unsigned clocks_before_select(num output, const hp_config *config) {
-    unsigned passed = output.graph->node[output.node].operand[1];
-    return hp_graph_clocks(output.graph, passed, config);
+static unsigned before_select(const hp_graph *g, const unsigned *clocks, num output) {
+    return clocks[g->node[output.node].operand[1]];
 }
 
-static void time_outputs(answer a, const hp_config *config, hp_pipe_cost *cost) {
-    unsigned x = clocks_before_select(a.CP.x, config), y = clocks_before_select(a.CP.y, config),
-             z = clocks_before_select(a.CP.z, config), xy = x > y ? x : y;
-    cost->clocks_F = hp_graph_clocks(a.F.graph, a.F.node, config);
-    cost->clocks_T = clocks_before_select(a.T, config);
+static void time_outputs(const hp_graph *g, answer a, const hp_config *config, hp_pipe_cost *cost) {
+    unsigned *clocks = hp_graph_clocks(g, config);
+    if (!clocks) return;
+    unsigned x = before_select(g, clocks, a.CP.x), y = before_select(g, clocks, a.CP.y),
+             z = before_select(g, clocks, a.CP.z), xy = x > y ? x : y;
+    cost->clocks_F = clocks[a.F.node];
+    cost->clocks_T = before_select(g, clocks, a.T);
     cost->clocks_CP = xy > z ? xy : z;
+    free(clocks);
 }
 
-hp_pipe_cost hp_pipe_cost_of(hp_pair pair, const hp_config *config) {
-    hp_graph g = {0};
+static answer trace_pipe(hp_graph *g, hp_pair pair, bool separation) {
     num primary[HP_OBJECT_WORDS_MAX], secondary[HP_OBJECT_WORDS_MAX], prepared[HP_PREPARED_MAX], index;
-    answer a = miss();
-    take_inputs(&g, hp_object_words(hp_pair_primary(pair)), primary);
-    take_inputs(&g, hp_object_words(hp_pair_secondary(pair)), secondary);
-    take_inputs(&g, 1, &index);
+    graph_traced = g;
+    take_inputs(g, hp_object_words(hp_pair_primary(pair)), primary);
+    take_inputs(g, hp_object_words(hp_pair_secondary(pair)), secondary);
+    take_inputs(g, 1, &index);
     switch (pair) {
 #define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, words)                                                  \
     case HP_PAIR_##NAME:                                                                                             \
         graph_##name##_prepare(secondary, prepared);                                                                 \
-        a = graph_##name##_test(primary, prepared, index);                                                           \
-        break;
+        return separation ? graph_##name##_test(primary, prepared, index, true)                                      \
+                          : graph_##name##_test(primary, prepared, index, false);
 #include <hitpipe/pairs.def>
 #undef HP_PAIR
     }
+    return miss();
+}
+
+hp_pipe_cost hp_pipe_cost_of(hp_pair pair, bool separation, const hp_config *config) {
+    hp_graph g;
+    hp_graph_begin(&g);
+    answer a = trace_pipe(&g, pair, separation);
     hp_pipe_cost cost = hp_graph_cost(&g, config);
-    if (a.any) time_outputs(a, config, &cost);
+    if (a.any && !g.failed) time_outputs(&g, a, config, &cost);
+    hp_graph_free(&g);
     cost.inputs = hp_object_words(hp_pair_secondary(pair));
     cost.outputs = 6; /* F, index, T, CP xyz */
-    cost.interval = 1;
     return cost;
 }
 
 hp_pipe_cost hp_transformer_cost_of(hp_object object, const hp_config *config) {
-    hp_graph g = {0};
+    hp_graph g;
     num matrix[12], secondary[HP_OBJECT_WORDS_MAX], moved[HP_OBJECT_WORDS_MAX];
+    hp_graph_begin(&g);
+    graph_traced = &g;
     take_inputs(&g, 12, matrix);
     take_inputs(&g, hp_object_words(object), secondary);
 #define HP_MOVED(NAME)                                                                                               \
@@ -63,7 +73,7 @@ hp_pipe_cost hp_transformer_cost_of(hp_object object, const hp_config *config) {
 #include "rtl_model/transformer/transformer.def"
 #undef HP_MOVED
     hp_pipe_cost cost = hp_graph_cost(&g, config);
+    hp_graph_free(&g);
     cost.inputs = cost.outputs = hp_object_words(object);
-    cost.interval = 1;
     return cost;
 }

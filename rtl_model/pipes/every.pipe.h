@@ -1,9 +1,16 @@
-/* Every pipe of pairs.def, under the number system in force. No include guard: it stands once per number system.
- * HP_BEHIND_EACH_PIPE, when defined, is a file to include behind each, with HP_PIPE naming the pipe. */
+/* Every pipe of pairs.def, under the number system in force. No include guard: it stands once per number system. */
+#include "rtl_model/pipes/parts.h"
 
-#define HP_PIPE ray_triangle
+#include "rtl_model/pipes/cylinder_cylinder.pipe.h"
+#include "rtl_model/pipes/obb_cylinder.pipe.h"
+#include "rtl_model/pipes/obb_obb.pipe.h"
+#include "rtl_model/pipes/obb_plane.pipe.h"
+#include "rtl_model/pipes/ray_cylinder.pipe.h"
+#include "rtl_model/pipes/ray_sphere.pipe.h"
 #include "rtl_model/pipes/ray_triangle.pipe.h"
-#ifdef HP_BEHIND_EACH_PIPE
-#include HP_BEHIND_EACH_PIPE
-#endif
-#undef HP_PIPE
+#include "rtl_model/pipes/sphere_obb.pipe.h"
+#include "rtl_model/pipes/sphere_sphere.pipe.h"
+#include "rtl_model/pipes/triangle_aabb.pipe.h"
+#include "rtl_model/pipes/triangle_cylinder.pipe.h"
+#include "rtl_model/pipes/triangle_obb.pipe.h"
+#include "rtl_model/pipes/triangle_sphere.pipe.h"

@@ -1,5 +1,5 @@
-/* The loops around one pipe in wide lanes. No include guard: every.pipe.h includes it behind each pipe, with HP_PIPE
- * set.
+/* The loops around one pipe in wide lanes. No include guard: wide_pipe.h includes it for each way of underflow, with
+ * HP_PIPE set.
  *
  * Lanes are primaries in `closest` and `any`: a chunk of primaries stays in registers (or the first-level cache)
  * while the prepared secondaries stream by, each word broadcast. Lanes are pairs in `pairs`, and secondaries in
@@ -32,35 +32,50 @@ HP_APART void HP_OF(prepares)(const float *secondaries, size_t n, const float *m
     }
 }
 
-/* What one chunk of primaries keeps of n prepared secondaries. `primary` points at the chunk's lanes of word 0, the
- * next word is HP_PACKET_PRIMARIES floats on. */
-HP_INLINE void HP_OF(closest_chunk)(const float *primary, const float *prepared, size_t n, uint32_t index,
-                                    float *best_T, uint32_t *best_index) {
-    num p[HP_OBJECT_WORDS_MAX];
+/* What closer means: ray pairs keep the smallest T, the others the deepest. */
+HP_INLINE flag HP_OF(closer)(num T, num best_T) {
+    return HP_WORDS(keeps_deepest) ? less(best_T, T) : less(T, best_T);
+}
+
+/* The chunk of primaries at `primary`: lanes of word 0; the next word is HP_PACKET_PRIMARIES floats on. */
+HP_INLINE void HP_OF(load_chunk)(const float *primary, num *p) {
     foreach (w, HP_WORDS(primary_words)) p[w] = HP_NAMED(load)(primary + w * HP_PACKET_PRIMARIES);
+}
+
+HP_INLINE void HP_OF(closest_one)(const num *p, const num *s, bits index, float *best_T, uint32_t *best_index) {
+    answer a = HP_OF(test)(p, s, index, false);
+    if (!a.any) return;
+    num T = HP_NAMED(reload)(best_T);
+    flag closer = and(a.F, HP_OF(closer)(a.T, T));
+    HP_NAMED(store)(best_T, select(closer, a.T, T));
+    HP_NAMED(store_bits)(best_index, select_bits(closer, a.index, HP_NAMED(load_bits)(best_index)));
+}
+
+/* What one chunk of primaries keeps of n prepared secondaries. */
+HP_APART void HP_OF(closest_chunk)(const float *primary, const float *prepared, size_t n, uint32_t index,
+                                   float *best_T, uint32_t *best_index, uint32_t *best_F) {
+    num p[HP_OBJECT_WORDS_MAX];
+    (void)best_F;
+    HP_OF(load_chunk)(primary, p);
     for (size_t i = 0; i < n; i++) {
         num s[HP_PREPARED_MAX];
         HP_NAMED(broadcast)(prepared + i * HP_WORDS(prepared_words), HP_WORDS(prepared_words), s);
-        answer a = HP_OF(test)(p, s, constant_bits(index + (uint32_t)i));
-        if (!a.any) continue;
-        num T = HP_NAMED(reload)(best_T);
-        flag closer = and(a.F, less(a.T, T));
-        HP_NAMED(store)(best_T, select(closer, a.T, T));
-        HP_NAMED(store_bits)(best_index, select_bits(closer, a.index, HP_NAMED(load_bits)(best_index)));
+        HP_OF(closest_one)(p, s, constant_bits(index + (uint32_t)i), best_T, best_index);
     }
 }
 
 /* Stops when every lane has a hit. */
-HP_INLINE void HP_OF(any_chunk)(const float *primary, const float *prepared, size_t n, uint32_t index, float *best_T,
-                                uint32_t *best_index) {
+HP_APART void HP_OF(any_chunk)(const float *primary, const float *prepared, size_t n, uint32_t index, float *best_T,
+                               uint32_t *best_index, uint32_t *best_F) {
     num p[HP_OBJECT_WORDS_MAX];
-    foreach (w, HP_WORDS(primary_words)) p[w] = HP_NAMED(load)(primary + w * HP_PACKET_PRIMARIES);
+    (void)best_F;
+    HP_OF(load_chunk)(primary, p);
     bits none = constant_bits(HP_NO_INDEX);
     flag open = HP_NAMED(same_bits)(HP_NAMED(load_bits)(best_index), none);
     for (size_t i = 0; i < n && HP_NAMED(any)(open); i++) {
         num s[HP_PREPARED_MAX];
         HP_NAMED(broadcast)(prepared + i * HP_WORDS(prepared_words), HP_WORDS(prepared_words), s);
-        answer a = HP_OF(test)(p, s, constant_bits(index + (uint32_t)i));
+        answer a = HP_OF(test)(p, s, constant_bits(index + (uint32_t)i), false);
         if (!a.any) continue;
         flag first = and(a.F, open);
         bits found = select_bits(first, a.index, HP_NAMED(load_bits)(best_index));
@@ -70,13 +85,40 @@ HP_INLINE void HP_OF(any_chunk)(const float *primary, const float *prepared, siz
     }
 }
 
+HP_INLINE void HP_OF(nearest_one)(const num *p, const num *s, bits index, float *best_T, uint32_t *best_index,
+                                  uint32_t *best_F) {
+    bits one = constant_bits(1);
+    answer a = HP_OF(test)(p, s, index, true);
+    num T = HP_NAMED(reload)(best_T);
+    bits F_bits = HP_NAMED(load_bits)(best_F);
+    flag F = HP_NAMED(same_bits)(F_bits, one);
+    flag first_hit = and(a.F, not(F));
+    flag closer_hit = and(and(a.F, F), HP_OF(closer)(a.T, T));
+    flag closer_miss = and(not(or (a.F, F)), less(a.T, T));
+    flag closer = or (or (first_hit, closer_hit), closer_miss);
+    HP_NAMED(store)(best_T, select(closer, a.T, T));
+    HP_NAMED(store_bits)(best_index, select_bits(closer, index, HP_NAMED(load_bits)(best_index)));
+    HP_NAMED(store_bits)(best_F, select_bits(first_hit, one, F_bits));
+}
+
+/* As closest_chunk, but a primary without a hit keeps the nearest miss. */
+HP_APART void HP_OF(nearest_chunk)(const float *primary, const float *prepared, size_t n, uint32_t index,
+                                   float *best_T, uint32_t *best_index, uint32_t *best_F) {
+    num p[HP_OBJECT_WORDS_MAX];
+    HP_OF(load_chunk)(primary, p);
+    for (size_t i = 0; i < n; i++) {
+        num s[HP_PREPARED_MAX];
+        HP_NAMED(broadcast)(prepared + i * HP_WORDS(prepared_words), HP_WORDS(prepared_words), s);
+        HP_OF(nearest_one)(p, s, constant_bits(index + (uint32_t)i), best_T, best_index, best_F);
+    }
+}
+
 /* Primaries [from, to) chunk by chunk. A last chunk that is not full is worked on in a copy, with done and zero lanes
  * behind it: another thread may own the primaries from `to` on. */
-HP_INLINE void HP_OF(each_chunk)(bool any, const hp_lanes *lanes, unsigned from, unsigned to, const float *prepared,
-                                 size_t n, uint32_t index, hp_best *best) {
+HP_INLINE void HP_OF(each_chunk)(hp_chunk_kernel *kernel, const hp_lanes *lanes, unsigned from, unsigned to,
+                                 const float *prepared, size_t n, uint32_t index, hp_best *best) {
     for (; from + HP_CHUNK <= to; from += HP_CHUNK)
-        (any ? HP_OF(any_chunk) : HP_OF(closest_chunk))(&lanes->word[0][from], prepared, n, index, &best->T[from],
-                                                        &best->index[from]);
+        kernel(&lanes->word[0][from], prepared, n, index, &best->T[from], &best->index[from], &best->F[from]);
     if (from >= to) return;
     hp_lanes rest;
     hp_best kept;
@@ -87,15 +129,18 @@ HP_INLINE void HP_OF(each_chunk)(bool any, const hp_lanes *lanes, unsigned from,
     }
     memset(kept.index, 0, HP_CHUNK * sizeof(uint32_t));
     memset(kept.T, 0, HP_CHUNK * sizeof(float));
+    memset(kept.F, 0, HP_CHUNK * sizeof(uint32_t));
     memcpy(kept.index, &best->index[from], bytes);
     memcpy(kept.T, &best->T[from], bytes);
-    (any ? HP_OF(any_chunk) : HP_OF(closest_chunk))(rest.word[0], prepared, n, index, kept.T, kept.index);
+    memcpy(kept.F, &best->F[from], bytes);
+    kernel(rest.word[0], prepared, n, index, kept.T, kept.index, kept.F);
     memcpy(&best->index[from], kept.index, bytes);
     memcpy(&best->T[from], kept.T, bytes);
+    memcpy(&best->F[from], kept.F, bytes);
 }
 
-HP_APART void HP_OF(pairs)(const float *primaries, unsigned primary_step, const float *secondaries, size_t n,
-                           const float *matrix, const hp_pairs_out *out) {
+HP_INLINE void HP_OF(each_pair)(const float *primaries, unsigned primary_step, const float *secondaries, size_t n,
+                                const float *matrix, bool separation, const hp_pairs_out *out) {
     num m[12], primary[HP_OBJECT_WORDS_MAX], secondary[HP_OBJECT_WORDS_MAX], ready[HP_PREPARED_MAX];
     bool moves = HP_NAMED(load_matrix)(matrix, m);
     size_t step = primary_step * HP_WORDS(primary_words);
@@ -107,19 +152,29 @@ HP_APART void HP_OF(pairs)(const float *primaries, unsigned primary_step, const 
         (secondaries + i * HP_WORDS(secondary_words), HP_WORDS(secondary_words), HP_WORDS(secondary_words), lanes,
          secondary);
         HP_OF(prepare_lanes)(moves, m, secondary, ready);
-        HP_NAMED(write_pairs)(HP_OF(test)(primary, ready, constant_bits(0)), lanes, i, out);
+        HP_NAMED(write_pairs)(HP_OF(test)(primary, ready, constant_bits(0), separation), lanes, i, out);
     }
 }
 
-HP_APART void HP_OF(closest)(const hp_lanes *lanes, unsigned from, unsigned to, const float *prepared, size_t n,
-                             uint32_t index, hp_best *best) {
-    HP_OF(each_chunk)(false, lanes, from, to, prepared, n, index, best);
+HP_APART void HP_OF(pairs)(const float *primaries, unsigned primary_step, const float *secondaries, size_t n,
+                           const float *matrix, const hp_pairs_out *out) {
+    HP_OF(each_pair)(primaries, primary_step, secondaries, n, matrix, false, out);
 }
 
-HP_APART void HP_OF(any)(const hp_lanes *lanes, unsigned from, unsigned to, const float *prepared, size_t n,
-                         uint32_t index, hp_best *best) {
-    HP_OF(each_chunk)(true, lanes, from, to, prepared, n, index, best);
+HP_APART void HP_OF(distances)(const float *primaries, unsigned primary_step, const float *secondaries, size_t n,
+                               const float *matrix, const hp_pairs_out *out) {
+    HP_OF(each_pair)(primaries, primary_step, secondaries, n, matrix, true, out);
 }
+
+#define HP_KEEPING(kept)                                                                                             \
+    HP_APART void HP_OF(kept)(const hp_lanes *lanes, unsigned from, unsigned to, const float *prepared, size_t n,    \
+                              uint32_t index, hp_best *best) {                                                       \
+        HP_OF(each_chunk)(HP_OF(kept##_chunk), lanes, from, to, prepared, n, index, best);                           \
+    }
+HP_KEEPING(closest)
+HP_KEEPING(any)
+HP_KEEPING(nearest)
+#undef HP_KEEPING
 
 #undef HP_OF
 #undef HP_WORDS

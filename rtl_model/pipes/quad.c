@@ -13,7 +13,7 @@ static void load_words(const float *in, unsigned n, num *out) {
     for (unsigned i = 0; i < n; i++) out[i] = in[i];
 }
 
-HP_APART answer run(hp_pair pair, const float *primary, const float *secondary) {
+HP_APART answer run(hp_pair pair, bool separation, const float *primary, const float *secondary) {
     num p[HP_OBJECT_WORDS_MAX], s[HP_OBJECT_WORDS_MAX], prepared[HP_PREPARED_MAX];
     switch (pair) {
 #define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, words)                                                  \
@@ -21,16 +21,16 @@ HP_APART answer run(hp_pair pair, const float *primary, const float *secondary) 
         load_words(primary, HP_##PRIMARY##_WORDS, p);                                                                \
         load_words(secondary, HP_##SECONDARY##_WORDS, s);                                                            \
         quad_##name##_prepare(s, prepared);                                                                          \
-        return quad_##name##_test(p, prepared, 0);
+        return quad_##name##_test(p, prepared, 0, separation);
 #include <hitpipe/pairs.def>
 #undef HP_PAIR
     }
     return miss();
 }
 
-hp_quad_result hp_quad_pipe_test(hp_pair pair, const float *primary, const float *secondary) {
+hp_quad_result hp_quad_pipe_test(hp_pair pair, bool separation, const float *primary, const float *secondary) {
     hp_environment before = hp_environment_enter(false);
-    answer a = run(pair, primary, secondary);
+    answer a = run(pair, separation, primary, secondary);
     hp_environment_leave(before);
     return a.any ? (hp_quad_result){a.F, a.T, {a.CP.x, a.CP.y, a.CP.z}} : (hp_quad_result){.T = (hp_quad)INFINITY};
 }

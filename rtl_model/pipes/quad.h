@@ -8,11 +8,11 @@
 
 typedef struct hp_quad_result {
     bool F;
-    hp_quad T;     /* a miss: +inf */
+    hp_quad T;     /* a miss: +inf, or its distance */
     hp_quad CP[3]; /* a miss: 0 */
 } hp_quad_result;
 
 /* One pair, objects in binary32 words as for hp_pipe_test. */
-hp_quad_result hp_quad_pipe_test(hp_pair pair, const float *primary, const float *secondary);
+hp_quad_result hp_quad_pipe_test(hp_pair pair, bool separation, const float *primary, const float *secondary);
 
 #endif

@@ -18,7 +18,8 @@ HP_INLINE void HP_NAMED(ray_triangle_prepare)(const num triangle[9], num prepare
     put_vec3(prepared, 6, sub3(v2, v0));
 }
 
-HP_INLINE answer HP_NAMED(ray_triangle_test)(const num ray[6], const num prepared[9], bits index) {
+HP_INLINE answer HP_NAMED(ray_triangle_test)(const num ray[6], const num prepared[9], bits index, bool separation) {
+    (void)separation; /* TODO */
     vec3 o = vec3_of(ray, 0), d = vec3_of(ray, 3);
     vec3 v0 = vec3_of(prepared, 0), e1 = vec3_of(prepared, 3), e2 = vec3_of(prepared, 6);
     num zero = constant(0), infinity = constant(INFINITY);

@@ -17,11 +17,11 @@
 #define HP_SCALAR_FLUSH 1
 #include "rtl_model/pipes/scalar_pipes.h"
 
-hp_result hp_pipe_test(hp_pair pair, hp_subnormals subnormals, const float *primary, const float *secondary,
-                       uint32_t index) {
+hp_result hp_pipe_test(hp_pair pair, hp_subnormals subnormals, bool separation, const float *primary,
+                       const float *secondary, uint32_t index) {
     hp_environment before = hp_environment_enter(false);
-    hp_result result = subnormals == HP_FLUSH ? flush_pipe_test(pair, primary, secondary, index)
-                                              : gradual_pipe_test(pair, primary, secondary, index);
+    hp_result result = subnormals == HP_FLUSH ? flush_pipe_test(pair, separation, primary, secondary, index)
+                                              : gradual_pipe_test(pair, separation, primary, secondary, index);
     hp_environment_leave(before);
     return result;
 }

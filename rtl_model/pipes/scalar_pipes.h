@@ -23,7 +23,8 @@ HP_INLINE hp_result HP_NAMED(result_of)(answer a) {
                        .stencil = 1};
 }
 
-HP_APART hp_result HP_NAMED(pipe_test)(hp_pair pair, const float *primary, const float *secondary, uint32_t index) {
+HP_APART hp_result HP_NAMED(pipe_test)(hp_pair pair, bool separation, const float *primary, const float *secondary,
+                                       uint32_t index) {
     num p[HP_OBJECT_WORDS_MAX], s[HP_OBJECT_WORDS_MAX], prepared[HP_PREPARED_MAX];
     switch (pair) {
 #define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, words)                                                  \
@@ -31,7 +32,8 @@ HP_APART hp_result HP_NAMED(pipe_test)(hp_pair pair, const float *primary, const
         HP_NAMED(load_words)(primary, HP_##PRIMARY##_WORDS, p);                                                      \
         HP_NAMED(load_words)(secondary, HP_##SECONDARY##_WORDS, s);                                                  \
         HP_NAMED(name##_prepare)(s, prepared);                                                                       \
-        return HP_NAMED(result_of)(HP_NAMED(name##_test)(p, prepared, index));
+        return HP_NAMED(result_of)(separation ? HP_NAMED(name##_test)(p, prepared, index, true)                      \
+                                              : HP_NAMED(name##_test)(p, prepared, index, false));
 #include <hitpipe/pairs.def>
 #undef HP_PAIR
     }

@@ -19,6 +19,9 @@ hp_query *hp_query_create(const uint8_t *payload) {
     query->users = 1;
     query->pair = (hp_pair)hp_get32(payload + HP_AT_QUERY_pair);
     query->mode = (hp_mode)hp_get32(payload + HP_AT_QUERY_mode);
+    uint32_t options = hp_get32(payload + HP_AT_QUERY_options);
+    query->separation = options & HP_OPTION_SEPARATION;
+    query->nearest = options & HP_OPTION_NEAREST;
     query->first = hp_get32(payload + HP_AT_QUERY_first);
     query->count = hp_get32(payload + HP_AT_QUERY_count);
     query->primaries = hp_get32(payload + HP_AT_QUERY_primaries);

@@ -10,6 +10,7 @@ typedef struct hp_query {
     hp_lanes lanes; /* active primaries as the wide pipes read them */
     hp_pair pair;
     hp_mode mode;
+    bool separation, nearest;   /* options */
     uint32_t first, count;      /* secondaries */
     unsigned primaries, active; /* in the packet; of them in the stencil */
     bool moved;                 /* secondaries pass through the transformer */

@@ -2,6 +2,7 @@
 #include <math.h>
 
 void hp_update_begin(hp_update *update, const hp_query *query) {
+    update->query = query;
     update->any = query->mode == HP_MODE_ANY;
     for (unsigned i = 0; i < query->active; i++) {
         update->newest[i] = 0;
@@ -10,14 +11,21 @@ void hp_update_begin(hp_update *update, const hp_query *query) {
     }
 }
 
-/* One lane. Tests come in the order of their secondaries, so of equal T the one that is there already is kept. */
-static bool keep_better(hp_update *update, unsigned i, const hp_result *result) {
+bool hp_closer(const hp_query *query, const hp_result *result, const hp_result *kept) {
+    if (!result->F) return query->nearest && !kept->F && result->T < kept->T;
+    if (!kept->F) return true;
+    return hp_pair_keeps_deepest(query->pair) ? result->T > kept->T : result->T < kept->T;
+}
+
+/* One lane. Tests come in the order of their secondaries, so of equals the one that is there already is kept. */
+static bool keep_better(hp_update *update, unsigned i, uint32_t index, const hp_result *result) {
     unsigned read = update->newest[i], write = 1 - read;
     hp_stencil_T old = update->stencil_T[read][i], kept = old;
-    bool better = result->F && old.stencil && (update->any || result->T < old.T);
+    hp_result best = {.F = update->F_index[i].F, .T = old.T};
+    bool better = old.stencil && hp_closer(update->query, result, &best);
     if (better) {
-        kept = (hp_stencil_T){result->T, !update->any};
-        update->F_index[i] = (hp_F_index){1, result->index, {result->CP[0], result->CP[1], result->CP[2]}};
+        kept = (hp_stencil_T){result->T, !(update->any && result->F)};
+        update->F_index[i] = (hp_F_index){result->F, index, {result->CP[0], result->CP[1], result->CP[2]}};
     }
     update->stencil_T[write][i] = kept;
     update->newest[i] = (uint8_t)write;
@@ -38,13 +46,13 @@ static void show(hp_update *update, unsigned i, const hp_result *result) {
     update->T_read = update->stencil_T[update->reads][i].T;
 }
 
-uint64_t hp_update_take(hp_update *update, unsigned first, unsigned lanes, uint64_t tested,
+uint64_t hp_update_take(hp_update *update, unsigned first, unsigned lanes, uint64_t tested, uint32_t index,
                         const hp_result *results) {
     unsigned shown = lane_shown(tested);
     show(update, first + shown, &results[shown]);
     update->kept = 0;
     for (unsigned lane = 0; lane < lanes; lane++)
-        if (tested >> lane & 1 && keep_better(update, first + lane, &results[lane]))
+        if (tested >> lane & 1 && keep_better(update, first + lane, index, &results[lane]))
             update->kept |= UINT64_C(1) << lane;
     update->T_written = update->stencil_T[update->newest[first + shown]][first + shown].T;
     return update->any ? update->kept : 0;

@@ -23,6 +23,7 @@ typedef struct hp_F_index {
 } hp_F_index;
 
 typedef struct hp_update {
+    const hp_query *query;
     bool any;
     hp_stencil_T stencil_T[2][HP_PACKET_PRIMARIES];
     uint8_t newest[HP_PACKET_PRIMARIES]; /* buffer written last */
@@ -35,9 +36,14 @@ typedef struct hp_update {
 
 void hp_update_begin(hp_update *update, const hp_query *query);
 
-/* Compares and keeps the results of `lanes` primaries from `first` on. `tested`: bit set for each lane that was a
- * test. Returns the lanes whose primary stops with this clock (mode any). */
-uint64_t hp_update_take(hp_update *update, unsigned first, unsigned lanes, uint64_t tested, const hp_result *results);
+/* Compares and keeps the results of `lanes` primaries with secondary `index`, from primary `first` on. `tested`: bit
+ * set for each lane that was a test. Returns the lanes whose primary stops with this clock (mode any). */
+uint64_t hp_update_take(hp_update *update, unsigned first, unsigned lanes, uint64_t tested, uint32_t index,
+                        const hp_result *results);
+
+/* Whether a result takes the place of what was kept so far (index HP_NO_INDEX: nothing) in mode closest. Of equals
+ * it does not. */
+bool hp_closer(const hp_query *query, const hp_result *result, const hp_result *kept);
 
 /* Record of active primary i. */
 hp_result hp_update_record(const hp_update *update, unsigned i);

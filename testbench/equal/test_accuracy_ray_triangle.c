@@ -50,7 +50,7 @@ static void holds(void **state) {
     for (unsigned i = 0; i < PAIRS; i++) {
         float ray[6], triangle[9];
         c->make(&random, i, ray, triangle);
-        hp_result answer = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, ray, triangle, i);
+        hp_result answer = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, false, ray, triangle, i);
         hpt_verdict verdict = hpt_judge_ray_triangle(ray, triangle, &answer);
         hpt_tally_add(&tally, &answer, &verdict);
         if (verdict.measured) errors[measured++] = verdict.T_error;

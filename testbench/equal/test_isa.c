@@ -95,7 +95,7 @@ static hp_result scalar(const float *ray, const float *triangle, const float *ma
     float moved[9];
     hp_subnormals subnormals = flush ? HP_FLUSH : HP_GRADUAL;
     if (matrix) hp_transform_object(HP_TRIANGLE, subnormals, matrix, triangle, moved);
-    return hp_pipe_test(HP_PAIR_RAY_TRIANGLE, subnormals, ray, matrix ? moved : triangle, index);
+    return hp_pipe_test(HP_PAIR_RAY_TRIANGLE, subnormals, false, ray, matrix ? moved : triangle, index);
 }
 
 /* Calls check(wide pipe, flush) for every instruction set and both ways of underflow. */
@@ -202,7 +202,7 @@ static void check_mode(hpt_random *random, const hp_wide_pipe *pipe, bool flush,
         const float *moves = way & 1 ? matrix : NULL;
         bool any = way & 2;
         static hp_best best;
-        for (unsigned i = 0; i < RAYS; i++) best.T[i] = INFINITY, best.index[i] = HP_NO_INDEX;
+        hp_best_begin(&best, HP_PAIR_RAY_TRIANGLE, false);
         run_mode(pipe, first, n, moves, flush, any, &best);
         fold(ray_of, first, n, moves, flush, any);
         assert_memory_equal(best.T, wanted.T, sizeof wanted.T);

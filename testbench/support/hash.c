@@ -84,7 +84,7 @@ static void draw(hpt_random *random, unsigned n, chunk *c) {
 
 static void test_scalar(hp_subnormals subnormals, unsigned n, chunk *c) {
     for (unsigned i = 0; i < n; i++) {
-        hp_result r = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, subnormals, c->rays[i], c->triangles[i], 0);
+        hp_result r = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, subnormals, false, c->rays[i], c->triangles[i], 0);
         c->F[i] = r.F;
         c->T[i] = r.T;
         for (unsigned axis = 0; axis < 3; axis++) c->CP[axis][i] = r.CP[axis];

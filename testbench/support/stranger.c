@@ -138,7 +138,7 @@ static hp_result test(stranger *board, const asked *query, uint32_t primary, uin
     memcpy(ray, query->rays + 24 * primary, 24);
     memcpy(triangle, board->scene + 9 * (size_t)secondary, 36);
     if (board->moved) hp_transform_object(HP_TRIANGLE, HP_GRADUAL, board->matrix, triangle, triangle);
-    return hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, ray, triangle, secondary);
+    return hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, false, ray, triangle, secondary);
 }
 
 static hp_result fold(stranger *board, const asked *query, uint32_t primary) {

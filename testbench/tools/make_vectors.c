@@ -114,8 +114,8 @@ _Static_assert(offsetof(hp_result, stencil) == 4 * HP_VECTOR_ANSWER_WORDS, "F, i
 
 /* The datapath's answer. False: the file is for any board, and boards differ. */
 static bool answer(hp_numerics numerics, uint32_t index, record *r) {
-    hp_result flush = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_FLUSH, r->ray, r->triangle, index);
-    hp_result gradual = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, r->ray, r->triangle, index);
+    hp_result flush = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_FLUSH, false, r->ray, r->triangle, index);
+    hp_result gradual = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, false, r->ray, r->triangle, index);
     r->answer = numerics == HP_NUMERICS_FLUSH ? flush : gradual;
     return numerics != HP_NUMERICS_ANY || memcmp(&flush, &gradual, sizeof flush) == 0;
 }

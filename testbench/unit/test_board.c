@@ -30,7 +30,7 @@ static hp_result expected_pair(const hp_config *config, bool moved, unsigned ray
     memcpy(words, triangles + (size_t)index * HP_TRIANGLE_WORDS, sizeof words);
     if (moved)
         hp_transform_object(HP_TRIANGLE, subnormals, matrix, triangles + (size_t)index * HP_TRIANGLE_WORDS, words);
-    return hp_pipe_test(HP_PAIR_RAY_TRIANGLE, subnormals, rays + (size_t)ray * HP_RAY_WORDS, words, index);
+    return hp_pipe_test(HP_PAIR_RAY_TRIANGLE, subnormals, false, rays + (size_t)ray * HP_RAY_WORDS, words, index);
 }
 
 static hp_result expected_fold(const hp_config *config, bool moved, const hpt_query *query, unsigned ray) {

@@ -138,7 +138,7 @@ static int make_bench(void **state, bool stranger) {
         for (unsigned k = 0; k < 9; k++) b->triangles[i][k] = (float)hpt_random_below(&random, 4001) / 1000 - 2;
     for (unsigned i = 0; i < RAYS; i++)
         for (unsigned k = 0; k < TRIANGLES; k++)
-            b->truth[i][k] = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, b->rays[i], b->triangles[k], k);
+            b->truth[i][k] = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, false, b->rays[i], b->triangles[k], k);
     *state = b;
     return 0;
 }

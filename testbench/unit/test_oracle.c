@@ -150,7 +150,7 @@ static void binary128_agrees(void **state) {
             float ray[6], v[9];
             makers[m](&random, i, ray, v);
             hpt_crossing exact = hpt_exact_ray_triangle(ray, v);
-            hp_quad_result quad = hp_quad_pipe_test(HP_PAIR_RAY_TRIANGLE, ray, v);
+            hp_quad_result quad = hp_quad_pipe_test(HP_PAIR_RAY_TRIANGLE, false, ray, v);
             assert_int_equal(exact.F, quad.F);
             if (quad.F) assert_true(fabs(exact.T - (double)quad.T) <= 0x1p-50 * exact.T);
         }

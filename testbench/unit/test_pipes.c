@@ -18,7 +18,7 @@ static const hp_config table = {.operator_clocks = {11, 11, 6, 27, 27, 3, 0}};
 
 static void test_operators_of_the_paper(void **state) {
     (void)state;
-    hp_pipe_cost c = hp_pipe_cost_of(HP_PAIR_RAY_TRIANGLE, &table);
+    hp_pipe_cost c = hp_pipe_cost_of(HP_PAIR_RAY_TRIANGLE, false, &table);
     assert_int_equal(c.multipliers, 27);
     assert_int_equal(c.dividers, 1);
     assert_int_equal(c.square_roots, 0);
@@ -36,7 +36,7 @@ static void test_operators_of_the_paper(void **state) {
 
 static void test_clocks(void **state) {
     (void)state;
-    hp_pipe_cost c = hp_pipe_cost_of(HP_PAIR_RAY_TRIANGLE, &table);
+    hp_pipe_cost c = hp_pipe_cost_of(HP_PAIR_RAY_TRIANGLE, false, &table);
     assert_int_equal(c.clocks_T, 83);
     assert_int_equal(c.clocks_F, 83 + 3);
     assert_int_equal(c.clocks_CP, 100);
@@ -53,11 +53,11 @@ static void test_clocks_follow_the_table(void **state) {
         if (op == HP_OP_COMPARE) continue;
         hp_config slower = table;
         slower.operator_clocks[op] += 1;
-        assert_int_equal(hp_pipe_cost_of(HP_PAIR_RAY_TRIANGLE, &slower).clocks, 100 + on_path[op]);
+        assert_int_equal(hp_pipe_cost_of(HP_PAIR_RAY_TRIANGLE, false, &slower).clocks, 100 + on_path[op]);
     }
     hp_config slow_compare = table;
     slow_compare.operator_clocks[HP_OP_COMPARE] = 50; /* u, v at 56, the smaller, its sign, and the multiplexers */
-    assert_int_equal(hp_pipe_cost_of(HP_PAIR_RAY_TRIANGLE, &slow_compare).clocks, 56 + 50 + 50);
+    assert_int_equal(hp_pipe_cost_of(HP_PAIR_RAY_TRIANGLE, false, &slow_compare).clocks, 56 + 50 + 50);
 }
 
 /* ---- decision
@@ -144,7 +144,7 @@ static void test_decisions(void **state) {
     for (unsigned i = 0; i < sizeof decisions / sizeof *decisions; i++) {
         const decision *d = &decisions[i];
         for (hp_subnormals s = HP_GRADUAL; s <= HP_FLUSH; s++) {
-            hp_result r = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, s, d->ray, d->triangle, 41);
+            hp_result r = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, s, false, d->ray, d->triangle, 41);
             if (r.F != d->F || (r.F && !same_bits(r.T, d->T))) fail_msg("%s: F %u, T %a", d->name, r.F, (double)r.T);
             if (!r.F) {
                 assert_miss(r);
@@ -172,11 +172,11 @@ static void test_no_hit_with_nan_or_infinity(void **state) {
                     float words[15];
                     memcpy(words, hits[h].ray, sizeof hits[h].ray);
                     memcpy(words + 6, hits[h].triangle, sizeof hits[h].triangle);
-                    assert_int_equal(hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, words, words + 6, 0).F, 1);
+                    assert_int_equal(hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, false, words, words + 6, 0).F, 1);
                     words[first] = bad[k % 4];
                     words[second] = bad[first == second ? k % 4 : k / 4];
-                    assert_miss(hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, words, words + 6, 0));
-                    assert_miss(hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_FLUSH, words, words + 6, 0));
+                    assert_miss(hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, false, words, words + 6, 0));
+                    assert_miss(hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_FLUSH, false, words, words + 6, 0));
                 }
 }
 
@@ -187,8 +187,8 @@ static void test_no_hit_with_nan_or_infinity(void **state) {
 static void test_subnormal_words(void **state) {
     (void)state;
     static const float ray[6] = {1, 1, -0x1p-127f, 0, 0, 0x1p-10f}, triangle[9] = FRONT;
-    hp_result gradual = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, ray, triangle, 0);
-    hp_result flush = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_FLUSH, ray, triangle, 0);
+    hp_result gradual = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, false, ray, triangle, 0);
+    hp_result flush = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_FLUSH, false, ray, triangle, 0);
     assert_int_equal(gradual.F, 1);
     assert_true(same_bits(gradual.T, 0x1p-117f));
     assert_int_equal(flush.F, 1);
@@ -201,23 +201,23 @@ static void test_quotient_at_the_border(void **state) {
     /* s.z = -z makes t = 16 z and det = 16 d: T = z / d */
     static const float triangle[9] = FRONT;
     float above[6] = {1, 1, -0x1.fffffep-26f, 0, 0, 0x1p101f}, below[6] = {1, 1, -0x1.fffffcp-26f, 0, 0, 0x1p101f};
-    hp_result gradual = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, above, triangle, 0);
+    hp_result gradual = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, false, above, triangle, 0);
     assert_true(same_bits(gradual.T, 0x1p-126f)); /* 2^-126 - 2^-150 rounds up to a multiple of 2^-149 */
-    hp_result flush = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_FLUSH, above, triangle, 0);
+    hp_result flush = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_FLUSH, false, above, triangle, 0);
     assert_true(flush.F == 1 && same_bits(flush.T, 0)); /* it has 24 bits and is below 2^-126 */
-    flush = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_FLUSH, below, triangle, 0);
+    flush = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_FLUSH, false, below, triangle, 0);
     assert_true(flush.F == 1 && same_bits(flush.T, 0));
 }
 
 static void test_environment_of_the_caller_does_not_matter(void **state) {
     (void)state;
     static const float ray[6] = {0.1f, 0.7f, -3, 0.3f, 0.1f, 1}, triangle[9] = {0.3f, 0, 0, 0, 4, 0.1f, 4, 0, 0.7f};
-    hp_result want = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, ray, triangle, 0);
+    hp_result want = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, false, ray, triangle, 0);
     static const int modes[] = {FE_DOWNWARD, FE_UPWARD, FE_TOWARDZERO};
     assert_int_equal(want.F, 1);
     for (unsigned i = 0; i < 3; i++) {
         fesetround(modes[i]);
-        hp_result got = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, ray, triangle, 0);
+        hp_result got = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, false, ray, triangle, 0);
         int after = fegetround();
         fesetround(FE_TONEAREST);
         assert_int_equal(after, modes[i]);
@@ -229,8 +229,8 @@ static void test_environment_of_the_caller_does_not_matter(void **state) {
 static void test_binary128(void **state) {
     (void)state;
     static const float ray[6] = {0.1f, 0.7f, -3, 0.3f, 0.1f, 1}, triangle[9] = {0.3f, 0, 0, 0, 4, 0.1f, 4, 0, 0.7f};
-    hp_result single = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, ray, triangle, 0);
-    hp_quad_result quad = hp_quad_pipe_test(HP_PAIR_RAY_TRIANGLE, ray, triangle);
+    hp_result single = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, false, ray, triangle, 0);
+    hp_quad_result quad = hp_quad_pipe_test(HP_PAIR_RAY_TRIANGLE, false, ray, triangle);
     assert_true(quad.F);
     double error = (double)(quad.T - (hp_quad)single.T);
     assert_true(error != 0 && fabs(error) < 4e-7 * single.T);
@@ -238,7 +238,7 @@ static void test_binary128(void **state) {
         const decision *d = &decisions[i];
         if (strstr(d->name, "T overflows") || strstr(d->name, "det overflows") || strstr(d->name, "too far"))
             continue;
-        quad = hp_quad_pipe_test(HP_PAIR_RAY_TRIANGLE, d->ray, d->triangle);
+        quad = hp_quad_pipe_test(HP_PAIR_RAY_TRIANGLE, false, d->ray, d->triangle);
         assert_int_equal(quad.F, d->F);
         assert_true(d->F ? (float)quad.T == d->T : (double)quad.T == INFINITY);
     }

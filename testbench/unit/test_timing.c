@@ -42,7 +42,7 @@ static hp_counters count(const hp_board_def *def, hp_mode mode, uint32_t n, uint
 }
 
 static unsigned latency_of(const hp_board_def *def) {
-    return hp_pipe_cost_of(HP_PAIR_RAY_TRIANGLE, &def->config).clocks;
+    return hp_pipe_cost_of(HP_PAIR_RAY_TRIANGLE, false, &def->config).clocks;
 }
 
 #define BOTH_ENGINES(engine) for (hp_engine_kind engine = HP_ENGINE_QUICK; engine <= HP_ENGINE_CLOCKED; engine++)

@@ -11,10 +11,9 @@
 extern "C" {
 #endif
 
-/* Operators of a datapath. The first seven have a latency of their own in the operator table (SQRT gets its knob with
- * the first pipe that has one); AND, OR are gates in
- * the shadow of a comparator and NEG, ABS are wires: none of them takes a clock. MIN and MAX are a comparator and a
- * multiplexer. */
+/* Operators of a datapath. The first seven have a latency of their own in the operator table; AND, OR are gates in
+ * the shadow of a comparator and NOT, NEG, ABS are wires: none of them takes a clock. MIN and MAX are a comparator
+ * and a multiplexer. */
 typedef enum hp_operator {
     HP_OP_ADD,
     HP_OP_SUB,
@@ -28,6 +27,7 @@ typedef enum hp_operator {
     HP_OP_MAX,
     HP_OP_AND,
     HP_OP_OR,
+    HP_OP_NOT,
     HP_OP_NEG,
     HP_OP_ABS,
     HP_OP_COUNT

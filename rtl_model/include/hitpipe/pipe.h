@@ -10,13 +10,14 @@
 extern "C" {
 #endif
 
-/* One pair through the scalar binary32 datapath: the reference for every bit. `primary` and `secondary` are objects
+/* One pair through the scalar binary32 datapath: the reference for every bit. With `separation`, T of a miss is the
+ * distance between the two objects; without it +inf, and the work is not done. `primary` and `secondary` are objects
  * of the pair's types in the word order of objects.def; `index` goes into the result of a hit. Stencil is 1. The
  * result depends on the words and `subnormals` alone, whatever the caller's floating-point environment. */
-hp_result hp_pipe_test(hp_pair pair, hp_subnormals subnormals, const float *primary, const float *secondary,
-                       uint32_t index);
+hp_result hp_pipe_test(hp_pair pair, hp_subnormals subnormals, bool separation, const float *primary,
+                       const float *secondary, uint32_t index);
 
-/* What a pipe is made of, read off its operator graph. */
+/* What a pipe is made of, read off its operator graph. The body of a loop counts once: it is used once a step. */
 typedef struct hp_pipe_cost {
     unsigned multipliers, dividers, square_roots, adders, subtractors;
     unsigned comparators; /* a min and a max of the same two numbers share one */
@@ -24,15 +25,16 @@ typedef struct hp_pipe_cost {
     unsigned ors, selects;
     unsigned inputs;  /* secondary words */
     unsigned outputs; /* F, index, T, CP xyz */
-    unsigned levels;  /* operators on the longest path; gates and wires count 0, a multiplexer 1 */
+    unsigned levels;  /* operators on the longest path, loops unrolled; gates and wires count 0, a multiplexer 1 */
     unsigned clocks;  /* latency under the operator table: when the last output leaves */
     unsigned clocks_F, clocks_T,
         clocks_CP;     /* when each leaves its last arithmetic operator, before the output multiplexer */
-    unsigned interval; /* clocks between two tests in one lane */
+    unsigned interval; /* clocks between two tests in one lane: steps of the longest loop; 1 without loops */
 } hp_pipe_cost;
 
-/* Cost of a pipe under config's operator table. */
-hp_pipe_cost hp_pipe_cost_of(hp_pair pair, const hp_config *config);
+/* Cost of a pipe under config's operator table, with or without the distance of a miss. levels is 0 when out of
+ * memory. */
+hp_pipe_cost hp_pipe_cost_of(hp_pair pair, bool separation, const hp_config *config);
 
 /* Cost of the transformer's datapath for one secondary of this type (inputs, outputs in words). */
 hp_pipe_cost hp_transformer_cost_of(hp_object object, const hp_config *config);

@@ -52,6 +52,20 @@ typedef enum hp_mode {
 #undef HP_MODE
 } hp_mode;
 
+/* What a query may ask for beyond its mode: a mask. */
+typedef enum hp_option {
+#define HP_OPTION(name, NAME, bit, meaning) HP_OPTION_##NAME = 1 << bit,
+#include <hitpipe/options.def>
+#undef HP_OPTION
+} hp_option;
+
+enum {
+    HP_OPTIONS_ALL = 0
+#define HP_OPTION(name, NAME, bit, meaning) | HP_OPTION_##NAME
+#include <hitpipe/options.def>
+#undef HP_OPTION
+};
+
 /* The order of the two loops of a query (knob loop_order). */
 typedef enum hp_loop_order { HP_PRIMARY_OUTER = 0, HP_SECONDARY_OUTER = 1 } hp_loop_order;
 
@@ -62,7 +76,8 @@ typedef enum hp_subnormals { HP_GRADUAL = 0, HP_FLUSH = 1 } hp_subnormals;
 #define HP_NO_INDEX 0xFFFFFFFFu /* index of a miss */
 
 /* One record of an answer, as the output SRAMs hold it: seven 32-bit words. A miss has F 0, index HP_NO_INDEX, T +inf
- * and CP 0, 0, 0. */
+ * and CP 0, 0, 0; with the option separation T is its distance, with nearest index is the secondary it misses least.
+ */
 typedef struct hp_result {
     uint32_t F;       /* collision flag: 0 or 1 */
     uint32_t index;   /* which secondary */
@@ -83,6 +98,10 @@ const char *hp_pair_name(hp_pair pair);     /* "ray-triangle" */
 hp_object hp_pair_primary(hp_pair pair);
 hp_object hp_pair_secondary(hp_pair pair);
 const char *hp_mode_name(hp_mode mode); /* "closest" */
+/* Which of its hits mode closest keeps for a primary: the one with the largest T (penetration depth), or the smallest
+ * (ray pairs). */
+bool hp_pair_keeps_deepest(hp_pair pair);
+
 /* The code of a typed name, or 0. */
 hp_pair hp_pair_from_name(const char *name);
 hp_mode hp_mode_from_name(const char *name);

@@ -47,6 +47,9 @@ static inline v_flag v_and(v_flag a, v_flag b) {
 static inline v_flag v_or(v_flag a, v_flag b) {
     return (v_flag)(a | b);
 }
+static inline v_flag v_not(v_flag a) {
+    return (v_flag)~a;
+}
 static inline v_num v_select(v_flag f, v_num a, v_num b) {
     return _mm512_mask_blend_ps(f, b, a);
 }

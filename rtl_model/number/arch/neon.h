@@ -47,6 +47,9 @@ static inline v_flag v_and(v_flag a, v_flag b) {
 static inline v_flag v_or(v_flag a, v_flag b) {
     return vorrq_u32(a, b);
 }
+static inline v_flag v_not(v_flag a) {
+    return vmvnq_u32(a);
+}
 static inline v_bits v_select_bits(v_flag f, v_bits a, v_bits b) {
     return vbslq_u32(f, a, b);
 }

@@ -46,6 +46,9 @@ static inline v_flag v_and(v_flag a, v_flag b) {
 static inline v_flag v_or(v_flag a, v_flag b) {
     return _mm_or_ps(a, b);
 }
+static inline v_flag v_not(v_flag a) {
+    return _mm_xor_ps(a, _mm_castsi128_ps(_mm_set1_epi32(-1)));
+}
 static inline v_num v_select(v_flag f, v_num a, v_num b) {
     return _mm_or_ps(_mm_and_ps(f, a), _mm_andnot_ps(f, b));
 }

@@ -1,5 +1,5 @@
-/* Every pipe in wide lanes under one way of underflow. No include guard; wide.c includes it once for each that the
- * instruction set needs code for, with HP_MEANING and HP_WIDE_FLUSH set. */
+/* The pipe HP_PIPE in wide lanes under one way of underflow. No include guard; wide.c includes it once for each that
+ * the instruction set needs code for, with HP_MEANING and HP_WIDE_FLUSH set. */
 #include "rtl_model/number/wide.h"
 
 #include "rtl_model/transformer/transformer.pipe.h"
@@ -66,7 +66,7 @@ HP_INLINE void HP_NAMED(write_pairs)(answer a, size_t n, size_t at, const hp_pai
     for (unsigned axis = 0; axis < 3; axis++) memcpy(out->CP[axis] + at, CP[axis], n * sizeof(float));
 }
 
-/* The transformer of each pipe's secondaries. */
+/* The transformer of this pipe's secondaries. */
 #define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, words)                                                  \
     HP_INLINE void HP_NAMED(name##_transform)(const num m[12], const num *in, num *out) {                            \
         HP_NAMED(transform_##SECONDARY)(m, in, out);                                                                 \
@@ -74,6 +74,7 @@ HP_INLINE void HP_NAMED(write_pairs)(answer a, size_t n, size_t at, const hp_pai
 #include <hitpipe/pairs.def>
 #undef HP_PAIR
 
-#define HP_BEHIND_EACH_PIPE "rtl_model/pipes/kernels.h"
-#include "rtl_model/pipes/every.pipe.h"
-#undef HP_BEHIND_EACH_PIPE
+#include "rtl_model/pipes/parts.h"
+#include HP_PIPE_FILE
+
+#include "rtl_model/pipes/kernels.h"

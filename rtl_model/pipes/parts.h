@@ -1,0 +1,2 @@
+/* What several pipes are made of, under the number system in force. No include guard: it stands once per number
+ * system, before the pipes. */
