@@ -1,2 +1,4 @@
 /* What several pipes are made of, under the number system in force. No include guard: it stands once per number
  * system, before the pipes. */
+
+#include "rtl_model/pipes/parts/cylinder.part.h"
