@@ -22,6 +22,8 @@ static hp_status check_def(const hp_asking *asking) {
     if (def->packet > board->packet_primaries)
         return hp_say(message, HP_ERROR_USAGE, "packets of %zu primaries: the board takes %u", def->packet,
                       board->packet_primaries);
+    if (def->nearest && def->mode != HP_MODE_CLOSEST)
+        return hp_say(message, HP_ERROR_USAGE, "nearest is for mode closest, not for %s", hp_mode_name(def->mode));
     if (asking->n && !asking->primaries) return hp_say(message, HP_ERROR_USAGE, "no primaries given");
     if (asking->n > HP_NO_INDEX) return hp_say(message, HP_ERROR_USAGE, "too many primaries: %zu", asking->n);
     return HP_OK;
@@ -35,6 +37,8 @@ static hp_status check_secondaries(hp_asking *asking) {
     if (device->scene != object)
         return hp_say(&device->message, HP_ERROR_USAGE, "%s needs objects of type %s, the scene has type %s",
                       hp_pair_name(def->pair), hp_object_name(object), hp_object_name(device->scene));
+    const char *fault = device->transformed && !device->unchecked ? hp_transform_fault(object, device->matrix) : NULL;
+    if (fault) return hp_say(&device->message, HP_ERROR_INPUT, "transform: %s", fault);
     size_t rest = def->first <= device->scene_count ? device->scene_count - def->first : 0;
     size_t count = def->count;
     if (def->mode == HP_MODE_ZIP) {
@@ -105,12 +109,19 @@ static void fill_part(const hp_asking *asking, size_t first, hp_part *part) {
     part->records = records_of(asking, part);
 }
 
+static uint32_t options_of(const hp_query_def *def) {
+    bool shows = def->mode == HP_MODE_ALL || def->mode == HP_MODE_ZIP || def->nearest;
+    bool separation = def->separation == HP_SEPARATION_AUTO ? shows : def->separation == HP_SEPARATION_ON;
+    return (separation ? HP_OPTION_SEPARATION : 0) | (def->nearest ? HP_OPTION_NEAREST : 0);
+}
+
 static void fill_query(const hp_asking *asking, const hp_part *part, hp_command *command) {
     uint8_t *payload = command->payload;
     unsigned words = hp_object_words(hp_pair_primary(asking->def->pair));
     memset(payload, 0, HP_QUERY_FIXED);
     hp_put32(payload + HP_AT_QUERY_pair, (uint32_t)asking->def->pair);
     hp_put32(payload + HP_AT_QUERY_mode, (uint32_t)asking->def->mode);
+    hp_put32(payload + HP_AT_QUERY_options, options_of(asking->def));
     hp_put32(payload + HP_AT_QUERY_first, part->first_secondary);
     hp_put32(payload + HP_AT_QUERY_count, part->secondaries);
     hp_put32(payload + HP_AT_QUERY_primaries, part->primaries);
@@ -153,6 +164,6 @@ const uint8_t *hp_next_records(const hp_command *command, const hp_part *part, c
     return whole && next && (!last || *count == left) ? payload + HP_RESULT_FIXED : NULL;
 }
 
-bool hp_plausible(const hp_result *record) {
-    return record->F <= 1 && (record->F || record->index == HP_NO_INDEX);
+bool hp_plausible(const hp_asking *asking, const hp_result *record) {
+    return record->F <= 1 && (record->F || record->index == HP_NO_INDEX || asking->def->nearest);
 }

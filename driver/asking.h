@@ -42,6 +42,6 @@ const uint8_t *hp_next_records(const hp_command *command, const hp_part *part, c
                                uint32_t length, bool last, uint32_t *count);
 
 /* Whether a record can be true: F is 0 or 1, and a miss has no index. */
-bool hp_plausible(const hp_result *record);
+bool hp_plausible(const hp_asking *asking, const hp_result *record);
 
 #endif

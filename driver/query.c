@@ -6,7 +6,7 @@
 static const hp_result masked = {.F = 0, .index = HP_NO_INDEX, .T = INFINITY};
 
 static bool in_range(const hp_asking *asking, const hp_part *part, unsigned primary, const hp_result *record) {
-    if (!record->F) return true;
+    if (record->index == HP_NO_INDEX) return !record->F;
     uint32_t index = record->index - part->first_secondary;
     return asking->def->mode == HP_MODE_ZIP ? index == primary : index < part->secondaries;
 }
@@ -22,7 +22,7 @@ static hp_status take_results(hp_command *command, const uint8_t *payload, uint3
     if (!records) return HP_ERROR_LENGTH;
     for (uint32_t i = 0; i < count; i++) {
         hp_result record = hp_get_result(records + i * HP_RESULT_BYTES);
-        if (!hp_plausible(&record) || !in_range(asking, part, order[i], &record)) return HP_ERROR_FIELD;
+        if (!hp_plausible(asking, &record) || !in_range(asking, part, order[i], &record)) return HP_ERROR_FIELD;
     }
     for (uint32_t i = 0; i < count; i++) results[order[i]] = hp_get_result(records + i * HP_RESULT_BYTES);
     command->position += count;

@@ -53,7 +53,7 @@ static hp_status take_records(hp_command *command, const uint8_t *payload, uint3
     for (uint32_t i = 0; i < count; i++, next_place(asking, part, &at)) {
         hp_result record = hp_get_result(records + (size_t)i * HP_RESULT_BYTES);
         uint32_t secondary = part->first_secondary + at.secondary;
-        if (!hp_plausible(&record) || (record.F && record.index != secondary)) return HP_ERROR_FIELD;
+        if (!hp_plausible(asking, &record) || (record.F && record.index != secondary)) return HP_ERROR_FIELD;
         device->batch_records[i] = record;
         device->batch_primary[i] = (uint32_t)(part->first + part->order[at.group + at.lane]);
         device->batch_secondary[i] = secondary;

@@ -150,6 +150,21 @@ static bool any_negative(const float *words, unsigned n) {
     return false;
 }
 
+/* What binary32 words of unit length may be off by, squared lengths and cosines; a few times their rounding. */
+#define UNIT_TOLERANCE 4e-6
+
+static double dot(const float *a, const float *b) {
+    return (double)a[0] * b[0] + (double)a[1] * b[1] + (double)a[2] * b[2];
+}
+
+/* Whether n vectors, one after another, have length 1 and right angles. */
+static bool orthonormal(const float *vectors, unsigned n) {
+    for (unsigned i = 0; i < n; i++)
+        for (unsigned k = i; k < n; k++)
+            if (!(fabs(dot(vectors + 3 * i, vectors + 3 * k) - (i == k)) <= UNIT_TOLERANCE)) return false;
+    return true;
+}
+
 const char *hp_object_fault(hp_object object, const float *words) {
     for (unsigned i = 0; i < hp_object_words(object); i++) {
         if (isnan(words[i])) return "holds a NaN";
@@ -168,17 +183,44 @@ const char *hp_object_fault(hp_object object, const float *words) {
         return NULL;
     case HP_OBB:
         if (any_negative(words + 3, 3)) return "half extent is negative";
-        for (unsigned axis = 6; axis < 15; axis += 3)
-            if (all_zero(words + axis, 3)) return "axis is zero";
-        return NULL;
+        return orthonormal(words + 6, 3) ? NULL : "axes are not orthonormal";
     case HP_CYLINDER:
         if (any_negative(words + 6, 1)) return "radius is negative";
         return words[0] == words[3] && words[1] == words[4] && words[2] == words[5] ? "p0 and p1 are the same point"
                                                                                     : NULL;
     case HP_PLANE:
-        return all_zero(words, 3) ? "normal is zero" : NULL;
+        if (all_zero(words, 3)) return "normal is zero";
+        return fabs(dot(words, words) - 1) > UNIT_TOLERANCE ? "normal is not of length 1" : NULL;
     }
     return "is of no known type";
+}
+
+const char *hp_transform_fault(hp_object object, const float matrix[12]) {
+    for (unsigned i = 0; i < 12; i++)
+        if (!isfinite(matrix[i])) return "the matrix holds a NaN or an infinity";
+    float rows[9];
+    for (unsigned i = 0; i < 9; i++) rows[i] = matrix[i / 3 * 4 + i % 3];
+    bool rigid = orthonormal(rows, 3);
+    switch (object) {
+    case HP_RAY:
+        return "rays are not moved: they are primaries";
+    case HP_TRIANGLE:
+        return NULL;
+    case HP_SPHERE:
+        return rigid ? NULL : "a sphere cannot carry a scale or a shear";
+    case HP_AABB:
+        for (unsigned i = 0; i < 9; i++)
+            if (i % 4 == 0 ? rows[i] <= 0 : rows[i] != 0)
+                return "an aabb cannot carry a rotation, a reflection or a shear";
+        return NULL;
+    case HP_OBB:
+        return rigid ? NULL : "an obb cannot carry a scale or a shear";
+    case HP_CYLINDER:
+        return rigid ? NULL : "a cylinder cannot carry a scale or a shear";
+    case HP_PLANE:
+        return rigid ? NULL : "a plane cannot carry a scale or a shear";
+    }
+    return "objects of no known type";
 }
 
 static const struct {

@@ -248,7 +248,7 @@ static const fault faults[] = {
     {HP_OPCODE_QUERY, PAYLOAD(QUERY, pair), 4, 31, true, 0, HP_ERROR_FIELD, true, false},
     {HP_OPCODE_QUERY, PAYLOAD(QUERY, mode), 4, 0, true, 0, HP_ERROR_FIELD, true, false},
     {HP_OPCODE_QUERY, PAYLOAD(QUERY, mode), 4, 5, true, 0, HP_ERROR_FIELD, true, false},
-    {HP_OPCODE_QUERY, PAYLOAD(QUERY, options), 4, 1, true, 0, HP_ERROR_FIELD, true, false},
+    {HP_OPCODE_QUERY, PAYLOAD(QUERY, options), 4, 4, true, 0, HP_ERROR_FIELD, true, false},
     {HP_OPCODE_QUERY, PAYLOAD(QUERY, first), 4, 701, true, 0, HP_ERROR_CAPACITY, true, false},
     {HP_OPCODE_QUERY, PAYLOAD(QUERY, count), 4, 701, true, 0, HP_ERROR_CAPACITY, true, false},
     {HP_OPCODE_QUERY, PAYLOAD(QUERY, count), 4, 0xFFFFFFFF, true, 0, HP_ERROR_CAPACITY, true, false},

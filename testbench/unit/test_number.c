@@ -150,9 +150,25 @@ static unsigned operator_on(hp_graph *g, hp_operator operator, unsigned variant,
 
 static const hp_config table = {.operator_clocks = {11, 11, 6, 27, 27, 3, 1}};
 
+static unsigned entry(unsigned *of, unsigned n) {
+    assert_non_null(of);
+    unsigned value = of[n];
+    free(of);
+    return value;
+}
+
+static unsigned clocks_to(const hp_graph *g, unsigned n) {
+    return entry(hp_graph_clocks(g, &table), n);
+}
+
+static unsigned levels_to(const hp_graph *g, unsigned n) {
+    return entry(hp_graph_levels(g), n);
+}
+
 static void test_graph_shares_equal_operators(void **state) {
     (void)state;
-    hp_graph g = {0};
+    hp_graph g;
+    hp_graph_begin(&g);
     unsigned a = hp_graph_input(&g), b = hp_graph_input(&g);
     assert_int_not_equal(a, b);
     assert_int_equal(hp_graph_constant(&g, 1), hp_graph_constant(&g, 1));
@@ -162,11 +178,13 @@ static void test_graph_shares_equal_operators(void **state) {
     assert_int_not_equal(product, operator_on(&g, HP_OP_MUL, 0, b, a));
     assert_int_not_equal(product, operator_on(&g, HP_OP_ADD, 0, a, b));
     assert_int_not_equal(operator_on(&g, HP_OP_COMPARE, 0, a, b), operator_on(&g, HP_OP_COMPARE, 1, a, b));
+    hp_graph_free(&g);
 }
 
 static void test_graph_counts(void **state) {
     (void)state;
-    hp_graph g = {0};
+    hp_graph g;
+    hp_graph_begin(&g);
     unsigned a = hp_graph_input(&g), b = hp_graph_input(&g), zero = hp_graph_constant(&g, 0);
     unsigned smaller = operator_on(&g, HP_OP_MIN, 0, a, b), greater = operator_on(&g, HP_OP_MAX, 0, a, b);
     unsigned f1 = operator_on(&g, HP_OP_COMPARE, 1, zero, smaller),
@@ -186,23 +204,56 @@ static void test_graph_counts(void **state) {
     assert_int_equal(cost.ands, 2);
     assert_int_equal(cost.ors, 1);
     assert_int_equal(cost.comparators, 2 + 3);
+    hp_graph_free(&g);
 }
 
 static void test_graph_times_the_longest_path(void **state) {
     (void)state;
-    hp_graph g = {0};
+    hp_graph g;
+    hp_graph_begin(&g);
     unsigned a = hp_graph_input(&g), b = hp_graph_input(&g);
     unsigned sum = operator_on(&g, HP_OP_ADD, 0, a, b), product = operator_on(&g, HP_OP_MUL, 0, a, b);
     unsigned quotient = operator_on(&g, HP_OP_DIV, 0, product, sum);
     unsigned root = hp_graph_operator(&g, HP_OP_SQRT, 0, 1, &quotient);
     unsigned size = hp_graph_operator(&g, HP_OP_ABS, 0, 1, &root),
              minus = hp_graph_operator(&g, HP_OP_NEG, 0, 1, &size);
-    assert_int_equal(hp_graph_clocks(&g, product, &table), 6);
-    assert_int_equal(hp_graph_clocks(&g, quotient, &table), 11 + 27);
-    assert_int_equal(hp_graph_levels(&g, quotient), 2);
-    assert_int_equal(hp_graph_clocks(&g, minus, &table), 11 + 27 + 27);
-    assert_int_equal(hp_graph_levels(&g, minus), 3);
+    assert_int_equal(clocks_to(&g, product), 6);
+    assert_int_equal(clocks_to(&g, quotient), 11 + 27);
+    assert_int_equal(levels_to(&g, quotient), 2);
+    assert_int_equal(clocks_to(&g, minus), 11 + 27 + 27);
+    assert_int_equal(levels_to(&g, minus), 3);
     assert_int_equal(hp_graph_cost(&g, &table).square_roots, 1);
+    hp_graph_free(&g);
+}
+
+/* x = x + a, four times over, each time with a product of its own; then a root outside. */
+static void test_graph_folds_loops(void **state) {
+    (void)state;
+    hp_graph g;
+    hp_graph_begin(&g);
+    unsigned a = hp_graph_input(&g), sum = hp_graph_input(&g), same = 0, last = 0;
+    for (unsigned i = hp_graph_repeat(&g, 4); hp_graph_repeating(&g, i, 4); i++) {
+        same = operator_on(&g, HP_OP_SUB, 0, a, a); /* does not change from step to step: one node */
+        unsigned product = operator_on(&g, HP_OP_MUL, 0, sum, a);
+        for (unsigned k = hp_graph_repeat(&g, 3); hp_graph_repeating(&g, k, 3); k++)
+            sum = operator_on(&g, HP_OP_ADD, 0, sum, product);
+        last = sum;
+    }
+    unsigned root = hp_graph_operator(&g, HP_OP_SQRT, 0, 1, &last);
+    hp_pipe_cost cost = hp_graph_cost(&g, &table);
+    assert_int_equal(cost.subtractors, 1);
+    assert_int_equal(cost.multipliers, 1);
+    assert_int_equal(cost.adders, 1);
+    assert_int_equal(cost.square_roots, 1);
+    assert_int_equal(cost.interval, 4 * 3);
+    assert_int_equal(levels_to(&g, root), 4 * (1 + 3) + 1);
+    assert_int_equal(clocks_to(&g, last), 4 * (6 + 3 * 11));
+    assert_int_equal(clocks_to(&g, root), 4 * (6 + 3 * 11) + (4 * 3 - 1) + 27);
+    assert_int_equal(clocks_to(&g, same), 11);
+    assert_int_equal(hp_graph_repeat(&g, 5), 0);
+    while (hp_graph_repeating(&g, 5, 5)) fail();
+    assert_int_equal(hp_graph_cost(&g, &table).interval, 12);
+    hp_graph_free(&g);
 }
 
 /* ---- environment
@@ -226,7 +277,8 @@ int main(void) {
         cmocka_unit_test(test_flushing_of_random_numbers),   cmocka_unit_test(test_flushing_at_the_border),
         cmocka_unit_test(test_gradual_is_the_language),      cmocka_unit_test(test_comparisons_min_max),
         cmocka_unit_test(test_graph_shares_equal_operators), cmocka_unit_test(test_graph_counts),
-        cmocka_unit_test(test_graph_times_the_longest_path), cmocka_unit_test(test_environment_is_restored),
+        cmocka_unit_test(test_graph_times_the_longest_path), cmocka_unit_test(test_graph_folds_loops),
+        cmocka_unit_test(test_environment_is_restored),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

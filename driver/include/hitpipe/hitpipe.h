@@ -85,24 +85,33 @@ const hp_identity *hp_identify(const hp_device *device);
 hp_status hp_upload(hp_device *device, hp_object object, const float *words, size_t count);
 
 /* Sets the transformer: secondaries are moved by the 3x4 row-major matrix in all later queries. NULL: not moved.
- * HP_ERROR_INPUT for a NaN or an infinity. */
+ * HP_ERROR_INPUT for a NaN or an infinity; a query refuses a matrix that the type of its secondaries cannot carry
+ * (hp_transform_fault), with the same status. */
 hp_status hp_transform(hp_device *device, const float matrix[12]);
+
+/* Whether the distance of a miss is computed. AUTO: where the query shows it, in modes all and zip and with
+ * `nearest`.
+ */
+typedef enum hp_separation { HP_SEPARATION_AUTO = 0, HP_SEPARATION_OFF, HP_SEPARATION_ON } hp_separation;
 
 /* What to ask. Always begin with hp_default_query_def. */
 typedef struct hp_query_def {
     uint32_t cookie;
-    hp_pair pair;            /* default HP_PAIR_RAY_TRIANGLE */
-    hp_mode mode;            /* default HP_MODE_CLOSEST */
-    size_t first, count;     /* which secondaries; count 0: all from `first` on (mode zip: one a primary) */
-    const uint32_t *stencil; /* bit i%32 of word i/32: primary i takes part; NULL: all do */
-    size_t packet;           /* primaries in a packet; 0: as many as the board takes */
+    hp_pair pair;             /* default HP_PAIR_RAY_TRIANGLE */
+    hp_mode mode;             /* default HP_MODE_CLOSEST */
+    size_t first, count;      /* which secondaries; count 0: all from `first` on (mode zip: one a primary) */
+    const uint32_t *stencil;  /* bit i%32 of word i/32: primary i takes part; NULL: all do */
+    size_t packet;            /* primaries in a packet; 0: as many as the board takes */
+    hp_separation separation; /* T of a miss: its distance, or +inf; default HP_SEPARATION_AUTO */
+    bool nearest;             /* mode closest: a primary without a hit keeps its nearest miss, F 0 with T and index */
 } hp_query_def;
 hp_query_def hp_default_query_def(void);
 
 /* Asks for n primaries, hp_object_words(hp_pair_primary(pair)) floats each, in modes closest, any and zip. Splits
  * them into packets and keeps several under way. results[i] answers primary i; a primary that the stencil masks gets
  * a miss with stencil 0. `results` is written only for primaries whose answer came; on error, the message says how
- * many. HP_ERROR_INPUT (message names the primary), HP_ERROR_USAGE (mode all), HP_ERROR_CAPACITY (secondaries past
+ * many. HP_ERROR_INPUT (message names the primary), HP_ERROR_USAGE (mode all; nearest in another mode
+ * than closest), HP_ERROR_CAPACITY (secondaries past
  * the scene), HP_ERROR_NOT_RESIDENT, HP_ERROR_CANCELLED, link errors after the retries. */
 hp_status hp_query(hp_device *device, const hp_query_def *def, const float *primaries, size_t n, hp_result *results);
 

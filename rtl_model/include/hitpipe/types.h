@@ -107,8 +107,14 @@ hp_pair hp_pair_from_name(const char *name);
 hp_mode hp_mode_from_name(const char *name);
 
 /* Whether an object may be sent: every word finite, and what its type forbids absent (a zero direction, p0 = p1, a
- * negative size, min > max). Returns NULL when it may, else what is wrong with it ("direction is zero"). */
+ * negative size, min > max, axes of an obb that are not orthonormal or a normal of a plane that is not of length 1,
+ * to within 4e-6). Returns NULL when it may, else what is wrong with it ("direction is zero"). */
 const char *hp_object_fault(hp_object object, const float *words);
+
+/* Whether objects of this type can be moved by the 3x4 row-major matrix: triangles by any, an aabb by one that moves
+ * and stretches along the axes, the others by a rigid one (a rotation or reflection, to within 4e-6, and any
+ * translation). Returns NULL when they can, else why not ("a sphere cannot carry a scale or a shear"). */
+const char *hp_transform_fault(hp_object object, const float matrix[12]);
 
 #ifdef __cplusplus
 }
