@@ -118,11 +118,25 @@ void hp_vcd_probe(hp_vcd *vcd, const hp_board *board) {
     p->packet = p->decoding = c->decoding;
     p->records = tests && hp_query_records_tests(board->query);
     p->wanted = tests && hp_secondary_wants(&c->secondary);
-    p->test = tests && !c->selector.over && c->selector.rest == 0 && oldest && oldest->ready <= board->clock;
+    p->tests = tests;
+    p->rested = c->selector.rest == 0;
+    p->test = tests && !c->selector.over && oldest && oldest->ready <= board->clock;
     p->output = tests && c->pipe.output.valid;
     p->record = (p->output && p->records) || (c->activity == HP_ACTIVITY_FLUSH && c->total > 0);
     p->level = c->secondary.count;
     p->held = c->sram.count;
+}
+
+/* A pipe that is not selected stands empty; the selected one takes a test in a clock in which it moves and its
+ * interval has passed. */
+static bool pipe_is_ready(const hp_board *board, const hp_probe *p, unsigned pair) {
+    const hp_clocked *c = board->state;
+    bool resident = board->config.pipes >> pair & 1;
+    return resident && (!p->tests || board->query->pair != pair || (c->moved && p->rested));
+}
+
+static bool pipe_is_offered(const hp_board *board, const hp_probe *p, unsigned pair) {
+    return p->test && board->query->pair == pair;
 }
 
 static uint64_t bits_of(float value) {

@@ -11,6 +11,7 @@ typedef struct hp_probe {
         packet;                        /* there is a transfer, an answer, one with records, a packet to be decoded */
     bool to_board, to_host, decoding;  /* which move */
     bool wanted, test, output, record; /* a beat, a test ready, a result in the output register, a record */
+    bool tests, rested;                /* a query streams; its pipe's interval has passed */
     bool records;                      /* the query's tests leave records */
     hp_activity activity;
     uint64_t level, held; /* of the secondary register file and the SRAMs */

@@ -1,7 +1,7 @@
 /* Contract 3: the quick engine equals the clocked one in every event, byte, clock and counter, on random boards with
  * random work. A failure prints the seed; `test_engines SEED` runs that one alone. */
 #include "testbench/support/board_host.h"
-#include "testbench/support/random.h"
+#include "testbench/support/pair_cases.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -10,7 +10,14 @@
 /* cmocka wants its headers first */
 #include <cmocka.h>
 
-enum { RUNS = 1200, SHORT = 40, LONG = 1500, PACKET = 40 };
+enum {
+    RUNS = 1200,
+    SHORT = 40,
+    LONG = 1500,
+    MIXED = 12, /* secondaries in the scene of a seed that uses all pipes */
+    PACKET = 40,
+    OBJECTS = HP_PLANE + 1
+};
 
 typedef struct work {
     hpt_random random;
@@ -19,7 +26,10 @@ typedef struct work {
     unsigned in_flight;
     unsigned scene;   /* most secondaries in it */
     unsigned present; /* secondaries of the scene */
+    bool mixed;       /* all pipes, not ray-triangle alone */
+    hp_object object; /* type of the scene */
     float triangles[LONG * HP_TRIANGLE_WORDS], rays[PACKET * HP_RAY_WORDS];
+    float objects[OBJECTS][PACKET * HP_OBJECT_WORDS_MAX];
 } work;
 
 static uint64_t below(work *w, uint64_t n) {
@@ -84,21 +94,54 @@ static void to_extremes(uint64_t seed, hp_config *c) {
     }
 }
 
+/* A type that some pair has as its secondary. */
+static hp_object random_secondary(work *w) {
+    static const hp_object types[] = {
+#define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, prepared) HP_##SECONDARY,
+#include <hitpipe/pairs.def>
+#undef HP_PAIR
+    };
+    return w->mixed ? types[below(w, sizeof types / sizeof *types)] : HP_TRIANGLE;
+}
+
+/* One of the pairs with the scene's type, now and then another. */
+static hp_pair random_pair(work *w) {
+    hp_pair fit[32];
+    unsigned n = 0;
+    bool any = below(w, 20) == 0;
+#define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, prepared)                                               \
+    if (any || HP_##SECONDARY == w->object) fit[n++] = HP_PAIR_##NAME;
+#include <hitpipe/pairs.def>
+#undef HP_PAIR
+    return w->mixed && n ? fit[below(w, n)] : HP_PAIR_RAY_TRIANGLE;
+}
+
 /* A scene in several packets, later ones overwriting what is there. */
 static void add_scene(work *w) {
     unsigned parts = 1 + (unsigned)below(w, 3);
     w->present = 0;
+    w->object = random_secondary(w);
+    const float *words = w->mixed ? w->objects[w->object] : w->triangles;
     for (unsigned i = 0; i < parts; i++) {
         unsigned first = i ? (unsigned)below(w, w->present + 1) : 0;
         unsigned count = (unsigned)below(w, w->scene - first + 1);
-        hpt_upload(&w->script, HP_TRIANGLE, first, count, w->triangles + (size_t)first * HP_TRIANGLE_WORDS);
+        hpt_upload(&w->script, w->object, first, count, words + (size_t)first * hp_object_words(w->object));
         if (i == 0 || first + count > w->present) w->present = first + count;
     }
+}
+
+/* Options that fit the mode, and now and then some that do not. */
+static uint32_t random_options(work *w, hp_mode mode) {
+    uint32_t options = (uint32_t)below(w, HP_OPTIONS_ALL + 1);
+    return mode == HP_MODE_CLOSEST || below(w, 20) == 0 ? options : options & ~(uint32_t)HP_OPTION_NEAREST;
 }
 
 static void add_query(work *w) {
     unsigned primaries = 1 + (unsigned)below(w, PACKET);
     hpt_query query = hpt_query_all((hp_mode)(1 + below(w, 4)), 0, primaries, w->rays);
+    query.pair = random_pair(w);
+    if (w->mixed) query.words = w->objects[hp_pair_primary(query.pair)];
+    if (w->mixed) query.options = random_options(w, query.mode);
     query.first = (unsigned)below(w, w->present + 1);
     query.count = (unsigned)below(w, w->present - query.first + 1);
     if (query.mode == HP_MODE_ZIP) {
@@ -174,6 +217,13 @@ static void add_something(work *w) {
     }
 }
 
+static void draw_type(work *w, hp_object type) {
+    float sphere[HP_SPHERE_WORDS];
+    for (unsigned i = 0; i < PACKET; i++)
+        hpt_draw_objects(&w->random, type, HP_SPHERE, HPT_RANDOM, i,
+                         w->objects[type] + (size_t)i * hp_object_words(type), sphere);
+}
+
 static work *random_work(uint64_t seed) {
     work *w = calloc(1, sizeof *w);
     assert_non_null(w);
@@ -181,6 +231,9 @@ static work *random_work(uint64_t seed) {
     w->scene = below(w, 24) ? SHORT : LONG; /* long: what is steady is taken in large steps */
     random_config(w);
     to_extremes(seed, &w->config);
+    w->mixed = seed % 3 == 0 && w->scene == SHORT;
+    if (w->mixed) w->scene = MIXED;
+    for (unsigned type = HP_RAY; type < OBJECTS && w->mixed; type++) draw_type(w, (hp_object)type);
     hpt_triangles(hpt_random_bits(&w->random), LONG, below(w, 2) ? 1.0f : 3.0f, w->triangles);
     hpt_rays(hpt_random_bits(&w->random), PACKET, w->rays);
     if (below(w, 8)) hpt_hello(&w->script);

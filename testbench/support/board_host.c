@@ -82,21 +82,24 @@ void hpt_counters(hpt_script *script, bool clear) {
 }
 
 hpt_query hpt_query_all(hp_mode mode, uint32_t count, uint32_t primaries, const float *rays) {
-    hpt_query query = {.mode = mode, .count = count, .primaries = primaries, .rays = rays};
+    hpt_query query = {
+        .pair = HP_PAIR_RAY_TRIANGLE, .mode = mode, .count = count, .primaries = primaries, .words = rays};
     for (unsigned i = 0; i < primaries; i++) query.stencil[i / 32] |= 1u << i % 32;
     return query;
 }
 
 void hpt_ask(hpt_script *script, const hpt_query *query) {
-    uint32_t bytes = 4 * HP_RAY_WORDS * query->primaries, length = HP_QUERY_FIXED + bytes;
+    uint32_t bytes = 4 * hp_object_words(hp_pair_primary(query->pair)) * query->primaries,
+             length = HP_QUERY_FIXED + bytes;
     uint8_t *payload = hpt_append(script, HP_OPCODE_QUERY, length);
-    hp_put32(payload + HP_AT_QUERY_pair, HP_PAIR_RAY_TRIANGLE);
+    hp_put32(payload + HP_AT_QUERY_pair, query->pair);
     hp_put32(payload + HP_AT_QUERY_mode, query->mode);
+    hp_put32(payload + HP_AT_QUERY_options, query->options);
     hp_put32(payload + HP_AT_QUERY_first, query->first);
     hp_put32(payload + HP_AT_QUERY_count, query->count);
     hp_put32(payload + HP_AT_QUERY_primaries, query->primaries);
     for (unsigned i = 0; i < 8; i++) hp_put32(payload + HP_AT_QUERY_stencil + 4 * i, query->stencil[i]);
-    if (bytes) memcpy(payload + HP_QUERY_FIXED, query->rays, bytes);
+    if (bytes) memcpy(payload + HP_QUERY_FIXED, query->words, bytes);
     seal(script, HP_OPCODE_QUERY, length);
 }
 

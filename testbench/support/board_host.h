@@ -30,10 +30,12 @@ void hpt_transform(hpt_script *script, const float matrix[12]); /* NULL: off */
 void hpt_counters(hpt_script *script, bool clear);
 
 typedef struct hpt_query {
+    hp_pair pair;
     hp_mode mode;
+    uint32_t options;
     uint32_t first, count, primaries;
     uint32_t stencil[8];
-    const float *rays;
+    const float *words; /* of the primaries */
 } hpt_query;
 /* A query of ray-triangle in which all take part. */
 hpt_query hpt_query_all(hp_mode mode, uint32_t count, uint32_t primaries, const float *rays);

@@ -1,6 +1,7 @@
 /* Every knob of config.def does something: turning it changes the count or the bits it says it changes, in both
  * engines. A knob without a row here fails. */
 #include "testbench/support/board_host.h"
+#include "testbench/support/pair_cases.h"
 #include <hitpipe/pipe.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -33,6 +34,7 @@ static const turn turns[] = {
     {"operators.sub", "12", "stalls.drain", NULL, NULL},
     {"operators.mul", "7", "stalls.drain", NULL, NULL},
     {"operators.div", "30", "stalls.drain", NULL, NULL},
+    {"operators.sqrt", "30", "stalls.drain", NULL, NULL},
     {"operators.compare", "60", "stalls.drain", NULL, NULL},
     {"operators.select", "1", "stalls.drain", NULL, NULL},
     {"ddr.bytes", "3600", "clocks.ddr_write", NULL, NULL},
@@ -63,6 +65,15 @@ static hp_config config_with(const char *key, const char *value) {
     return config;
 }
 
+/* A pipe with a square root. */
+static void ask_spheres(hpt_script *script) {
+    const float spheres[2 * HP_SPHERE_WORDS] = {0, 0, 0, 1, 1, 1, 1, 1};
+    hpt_upload(script, HP_SPHERE, 0, 2, spheres);
+    hpt_query query = hpt_query_all(HP_MODE_CLOSEST, 2, 2, spheres);
+    query.pair = HP_PAIR_SPHERE_SPHERE;
+    hpt_ask(script, &query);
+}
+
 static hpt_log play(const hp_config *config, hp_engine_kind engine) {
     static float triangles[TRIANGLES * HP_TRIANGLE_WORDS], rays[RAYS * HP_RAY_WORDS];
     hpt_script script = {0};
@@ -80,6 +91,7 @@ static hpt_log play(const hp_config *config, hp_engine_kind engine) {
         hpt_query query = hpt_query_all(mode, mode == HP_MODE_ZIP ? RAYS : TRIANGLES, RAYS, rays);
         hpt_ask(&script, &query);
     }
+    ask_spheres(&script);
     hp_board_def def = {.config = *config, .engine = engine, .threads = 1};
     hpt_log log = hpt_play(&def, &script, 2);
     hpt_script_free(&script);
@@ -125,6 +137,27 @@ static void every_knob_changes_what_it_says(void **state) {
     }
 }
 
+/* Asks a pair of its own kind of scene; returns the status of the answer. */
+static hp_status ask_pair(const hp_config *config, hp_pair pair) {
+    float primary[HP_OBJECT_WORDS_MAX], secondary[HP_OBJECT_WORDS_MAX];
+    hpt_random random = hpt_random_seed(7);
+    hpt_script script = {0};
+    hp_header header;
+    hpt_draw_pair(&random, pair, HPT_RANDOM, 0, primary, secondary);
+    hpt_query query = hpt_query_all(HP_MODE_CLOSEST, 1, 1, primary);
+    query.pair = pair;
+    hpt_hello(&script);
+    hpt_upload(&script, hp_pair_secondary(pair), 0, 1, secondary);
+    hpt_ask(&script, &query);
+    hp_board_def def = {.config = *config, .engine = HP_ENGINE_QUICK, .threads = 1};
+    hpt_log log = hpt_play(&def, &script, 1);
+    bool answered = hpt_answer(&log, HP_OPCODE_RESULT, 0, &header);
+    assert_true(answered || hpt_answer(&log, HP_OPCODE_ERROR, 0, &header));
+    hpt_log_free(&log);
+    hpt_script_free(&script);
+    return (hp_status)header.status;
+}
+
 /* Pipes: a query is carried out if its pipe is resident, and refused if not; the board says which are. */
 static void pipes_are_resident_or_not(void **state) {
     (void)state;
@@ -133,16 +166,16 @@ static void pipes_are_resident_or_not(void **state) {
 #include <hitpipe/pairs.def>
 #undef HP_PAIR
     };
-    for (unsigned i = 0; i <= sizeof pairs / sizeof pairs[0]; i++) {
-        bool none = i == sizeof pairs / sizeof pairs[0];
-        hp_config config = config_with("pipes", none ? "none" : hp_pair_name(pairs[i]));
+    enum { PAIRS = sizeof pairs / sizeof pairs[0] };
+    for (unsigned i = 0; i <= PAIRS; i++) {
+        hp_config config = config_with("pipes", i == PAIRS ? "none" : hp_pair_name(pairs[i]));
         hpt_log log = play(&config, HP_ENGINE_QUICK);
         hp_header header;
         const uint8_t *reply = hpt_answer(&log, HP_OPCODE_HELLO_REPLY, 0, &header);
-        bool resident = !none && pairs[i] == HP_PAIR_RAY_TRIANGLE;
         assert_non_null(reply);
-        assert_int_equal(hp_get32(reply + HP_AT_HELLO_REPLY_pairs), none ? 0 : 1u << pairs[i]);
-        assert_int_equal(hpt_answer(&log, HP_OPCODE_RESULT, 0, &header) != NULL, resident);
+        assert_int_equal(hp_get32(reply + HP_AT_HELLO_REPLY_pairs), i == PAIRS ? 0 : 1u << pairs[i]);
+        for (unsigned k = 0; k < PAIRS; k++)
+            assert_int_equal(ask_pair(&config, pairs[k]), i == k ? HP_OK : HP_ERROR_NOT_RESIDENT);
         hpt_log_free(&log);
     }
 }

@@ -226,6 +226,11 @@ static void the_page_has_objects_pairs_modes_and_errors(void **state) {
 #include <hitpipe/modes.def>
 #undef HP_MODE
     page_end(&rows);
+    rows = page_table(*state, "| bit | option | meaning |");
+#define HP_OPTION(name, NAME, bit, meaning) page_expect(&rows, "| %d | %s | %s |", bit, #name, meaning);
+#include <hitpipe/options.def>
+#undef HP_OPTION
+    page_end(&rows);
     rows = page_table(*state, "| code | name | text | cause |");
 #define HP_STATUS(NAME, code, exit, text, cause)                                                                     \
     page_expect(&rows, "| %d | %s | %s | %s |", code, #NAME, text, cause);

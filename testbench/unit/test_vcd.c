@@ -1,6 +1,7 @@
 /* The waveform of the clocked engine: a parser of value change dumps reads it, refuses what IEEE 1364-2005 clause 18
  * refuses, and counts in it what the counter registers count. */
 #include "testbench/support/board_host.h"
+#include "testbench/support/pair_cases.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -156,7 +157,25 @@ static wave *read_wave(text *t, uint64_t per_clock) {
     return w;
 }
 
-/* A board that does everything once: uploads, a transform, all modes, SRAMs that fill, a refresh and rows. */
+/* A scene of another type, asked by two pipes in turn, with and without the distance of a miss. */
+static void ask_boxes(hpt_script *script) {
+    float boxes[8 * HP_OBB_WORDS], spheres[4 * HP_SPHERE_WORDS];
+    hpt_random random = hpt_random_seed(5);
+    for (unsigned i = 0; i < 8; i++)
+        hpt_draw_objects(&random, HP_SPHERE, HP_OBB, HPT_RANDOM, i, spheres + i % 4 * HP_SPHERE_WORDS,
+                         boxes + i * HP_OBB_WORDS);
+    hpt_upload(script, HP_OBB, 0, 8, boxes);
+    hpt_transform(script, NULL);
+    for (unsigned i = 0; i < 4; i++) {
+        hpt_query query = hpt_query_all(HP_MODE_CLOSEST, 8, 4, i & 1 ? boxes : spheres);
+        query.pair = i & 1 ? HP_PAIR_OBB_OBB : HP_PAIR_SPHERE_OBB;
+        query.options = i & 2 ? HP_OPTION_SEPARATION | HP_OPTION_NEAREST : 0;
+        hpt_ask(script, &query);
+    }
+}
+
+/* A board that does everything once: uploads, a transform, all modes, SRAMs that fill, a refresh and rows, several
+ * pipes. */
 static hpt_log play_everything(text *t, uint64_t clock_hz) {
     hp_board_def def = hpt_board("usb3", HP_ENGINE_CLOCKED);
     hpt_script script = {0};
@@ -178,6 +197,7 @@ static hpt_log play_everything(text *t, uint64_t clock_hz) {
         hpt_query query = hpt_query_all(mode, mode == HP_MODE_ZIP ? 20 : 40, 20, rays);
         hpt_ask(&script, &query);
     }
+    ask_boxes(&script);
     hpt_log log = hpt_play(&def, &script, 2);
     hpt_script_free(&script);
     return log;
@@ -223,6 +243,28 @@ static void waveform_counts_what_the_counters_count(void **state) {
         uint64_t before_hello = strcmp(counter, "stalls.command") == 0; /* HELLO's own clock */
         assert_int_equal(w->high[signal], value + before_hello);
     }
+    free(t.bytes);
+    free(w);
+    hpt_log_free(&log);
+}
+
+/* Each test goes into the pipe of its query; no other pipe is offered one, and each resident one stands ready. */
+static void each_pipe_has_its_handshake(void **state) {
+    (void)state;
+    text t = {0};
+    hpt_log log = play_everything(&t, 100000000);
+    wave *w = read_wave(&t, 10);
+    uint64_t tests = 0;
+#define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, prepared)                                               \
+    tests += handed_over(w, "selector." #name);                                                                      \
+    assert_true(w->high[by_name(w, "selector." #name "_ready")] > 0);
+#include <hitpipe/pairs.def>
+#undef HP_PAIR
+    assert_int_equal(tests, log.counters.clocks_issue);
+    assert_int_equal(handed_over(w, "selector.obb_obb"), 2 * 2 * 8); /* four primaries in three lanes */
+    assert_int_equal(handed_over(w, "selector.sphere_obb"), 2 * 2 * 8);
+    assert_int_equal(handed_over(w, "selector.ray_sphere"), 0);
+    assert_true(w->high[by_name(w, "selector.separation")] > 0);
     free(t.bytes);
     free(w);
     hpt_log_free(&log);
@@ -298,9 +340,11 @@ static void only_the_clocked_engine_has_one(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(waveform_counts_what_the_counters_count), cmocka_unit_test(every_handshake_is_seen),
-        cmocka_unit_test(time_is_told_in_picoseconds_where_needed), cmocka_unit_test(broken_waveforms_are_refused),
-        cmocka_unit_test(only_the_clocked_engine_has_one)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(waveform_counts_what_the_counters_count),
+                                       cmocka_unit_test(each_pipe_has_its_handshake),
+                                       cmocka_unit_test(every_handshake_is_seen),
+                                       cmocka_unit_test(time_is_told_in_picoseconds_where_needed),
+                                       cmocka_unit_test(broken_waveforms_are_refused),
+                                       cmocka_unit_test(only_the_clocked_engine_has_one)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
