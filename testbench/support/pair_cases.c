@@ -1,6 +1,7 @@
 #include "pair_cases.h"
 
 #include "ray_triangle_cases.h"
+#include "testbench/reference/truth.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -204,14 +205,20 @@ static void aim(hpt_random *random, unsigned i, shape *ray, const shape *at) {
     for (int k = 0; k < 3; k++) ray->direction[k] *= stretch;
 }
 
-/* Centres apart by up to 1.1 times both radii, or a point of one onto a point of the other. */
+/* How many sums of both radii apart, at most: so that about half of all pairs collide. */
+static double farthest(hp_object a, hp_object b) {
+    if (b == HP_PLANE) return 5;
+    return a == HP_SPHERE && b == HP_SPHERE ? 2.2 : a == HP_SPHERE || b == HP_SPHERE ? 1.4 : 1.2;
+}
+
+/* Centres apart in a random direction, or a point of one onto a point of the other. */
 static void place(hpt_random *random, unsigned i, shape *a, const shape *b) {
     double from[3], to[3], away[3];
     if (a->type == HP_RAY) {
         aim(random, i, a, b);
         return;
     }
-    if (i % 3 == 0) {
+    if (i % 6 == 5) {
         draw_point(random, a, 1, from);
         draw_point(random, b, 1, to);
         for (int k = 0; k < 3; k++) a->centre[k] += to[k] - from[k];
@@ -219,7 +226,8 @@ static void place(hpt_random *random, unsigned i, shape *a, const shape *b) {
     }
     draw_direction(random, away);
     memcpy(a->centre, b->centre, sizeof a->centre);
-    add_scaled(a->centre, hpt_random_between(random, 0.05, 1.1) * (radius_of(a) + radius_of(b)), away);
+    double most = farthest(a->type, b->type) * (radius_of(a) + radius_of(b));
+    add_scaled(a->centre, most * hpt_random_between(random, 0.02, 1), away);
 }
 
 static void draw_random(hpt_random *random, unsigned i, shape *a, shape *b) {
@@ -342,6 +350,14 @@ static void draw_offset(hpt_random *random, double by[3]) {
     }
 }
 
+/* Moves the first, by the oracle's word, to where the two are a small number of bands from touching. */
+static void graze(hpt_random *random, hp_object a, hp_object b, float *first, const float *second) {
+    hpt_truth truth = hpt_truth_between(a, b, first, second);
+    double apart = draw_power(random, -5, 10) * truth.band * (hpt_random_below(random, 2) ? 1 : -1), by[3];
+    for (int k = 0; k < 3; k++) by[k] = -(apart - truth.signed_distance) * truth.direction[k];
+    hpt_move_object(a, first, by);
+}
+
 static bool legal(hp_object a, hp_object b, const float *first, const float *second) {
     return !hp_object_fault(a, first) && !hp_object_fault(b, second);
 }
@@ -362,6 +378,7 @@ void hpt_draw_objects(hpt_random *random, hp_object a, hp_object b, hpt_class cl
         }
         put_shape(&s, first);
         put_shape(&t, second);
+        if (class == HPT_GRAZING) graze(random, a, b, first, second);
     } while (!legal(a, b, first, second));
 }
 
