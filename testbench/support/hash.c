@@ -8,8 +8,9 @@
 
 enum { CHUNK = 4096 };
 
+/* Objects one after another, without gaps. */
 typedef struct chunk {
-    float rays[CHUNK][6], triangles[CHUNK][9];
+    float primaries[CHUNK * HP_OBJECT_WORDS_MAX], secondaries[CHUNK * HP_OBJECT_WORDS_MAX];
     uint32_t F[CHUNK];
     float T[CHUNK], CP[3][CHUNK];
 } chunk;
@@ -28,6 +29,8 @@ static void draw_whole_point(hpt_random *random, float *point) {
     uint64_t r = hpt_random_bits(random);
     for (unsigned axis = 0; axis < 3; axis++) point[axis] = (float)((r >> (20 * axis)) % 7) - 3;
 }
+
+/* ---- ray-triangle ---- */
 
 /* Aims the ray at v0 + b1 e1 + b2 e2. */
 static void aim(float b1, float b2, float ray[6], const float triangle[9]) {
@@ -78,22 +81,109 @@ static void bits(hpt_random *random, float ray[6], float triangle[9]) {
 static void (*const kinds[])(hpt_random *random, float ray[6], float triangle[9]) = {near, edge,  near, small,
                                                                                      edge, small, near, bits};
 
-static void draw(hpt_random *random, unsigned n, chunk *c) {
-    for (unsigned i = 0; i < n; i++) kinds[i % (sizeof kinds / sizeof *kinds)](random, c->rays[i], c->triangles[i]);
+/* ---- objects of any type ---- */
+
+/* A frame from a quaternion of small whole numbers: its words are rounded once. `square`: along the axes. */
+static void draw_axes(hpt_random *random, bool square, float axes[9]) {
+    uint64_t r = hpt_random_bits(random);
+    double q[4];
+    for (unsigned i = 0; i < 4; i++) q[i] = (double)(r >> 10 * i & 1023) - 512;
+    if (square) q[0] = 1, q[1] = (double)(r & 1), q[2] = q[3] = 0;
+    double a = q[0], b = q[1], c = q[2], d = q[3], n = a * a + b * b + c * c + d * d;
+    if (n == 0) a = n = 1;
+    const double rows[9] = {
+        a * a + b * b - c * c - d * d, 2 * (b * c - a * d),           2 * (b * d + a * c),
+        2 * (b * c + a * d),           a * a - b * b + c * c - d * d, 2 * (c * d - a * b),
+        2 * (b * d - a * c),           2 * (c * d + a * b),           a * a - b * b - c * c + d * d};
+    for (unsigned i = 0; i < 9; i++) axes[i] = (float)(rows[i] / n);
 }
 
-static void test_scalar(hp_subnormals subnormals, unsigned n, chunk *c) {
+static void draw_place(hpt_random *random, bool whole, float *point) {
+    if (whole)
+        draw_whole_point(random, point);
+    else
+        draw_point(random, 1, point);
+}
+
+/* 0 to 1; whole: 0, 1 or 2. */
+static float draw_size(hpt_random *random, bool whole) {
+    uint64_t r = hpt_random_bits(random);
+    return whole ? (float)(r % 3) : (part(r, 0, 1) + 1) / 2;
+}
+
+static void draw_object(hpt_random *random, hp_object type, bool whole, float *words) {
+    float axes[9];
+    unsigned points = type == HP_TRIANGLE ? 3 : type == HP_RAY || type == HP_AABB || type == HP_CYLINDER ? 2 : 1;
+    for (unsigned i = 0; i < points; i++) draw_place(random, whole, words + 3 * i);
+    if (type == HP_SPHERE) words[3] = draw_size(random, whole);
+    if (type == HP_CYLINDER) words[6] = draw_size(random, whole) / 2;
+    for (unsigned i = 0; i < 3 && type == HP_AABB; i++) words[3 + i] = words[i] + draw_size(random, whole);
+    for (unsigned i = 0; i < 3 && type == HP_OBB; i++) words[3 + i] = draw_size(random, whole);
+    if (type == HP_OBB) draw_axes(random, whole, words + 6);
+    if (type != HP_PLANE) return;
+    words[3] = words[0];
+    draw_axes(random, whole, axes);
+    memcpy(words, axes, 3 * sizeof(float));
+}
+
+/* Whether word w of an object is a length, not a part of a direction. */
+static bool is_length(hp_object type, unsigned w) {
+    if (type == HP_RAY) return w < 3;
+    if (type == HP_OBB) return w < 6;
+    return type == HP_PLANE ? w == 3 : true;
+}
+
+static void draw_bits(hpt_random *random, unsigned n, float *words) {
+    for (unsigned w = 0; w < n; w++) {
+        uint32_t r = (uint32_t)(hpt_random_bits(random) >> 32);
+        memcpy(words + w, &r, sizeof r);
+    }
+}
+
+/* Pair i: near each other; in whole numbers, so that they touch and coincide; so small that products underflow; any
+ * bits at all. */
+static void draw_any(hpt_random *random, uint64_t i, hp_pair pair, float *primary, float *secondary) {
+    hp_object types[2] = {hp_pair_primary(pair), hp_pair_secondary(pair)};
+    float *words[2] = {primary, secondary}, size = ldexpf(1, -(int)(hpt_random_bits(random) & 127));
+    for (unsigned k = 0; k < 2; k++) {
+        unsigned n = hp_object_words(types[k]);
+        if (i % 8 == 7)
+            draw_bits(random, n, words[k]);
+        else
+            draw_object(random, types[k], i & 1, words[k]);
+        for (unsigned w = 0; w < n && i % 4 == 2; w++)
+            if (is_length(types[k], w)) words[k][w] *= size;
+    }
+}
+
+/* ---- hashing ---- */
+
+static void draw(hpt_random *random, hp_pair pair, uint64_t first, unsigned n, chunk *c) {
+    unsigned p = hp_object_words(hp_pair_primary(pair)), s = hp_object_words(hp_pair_secondary(pair));
     for (unsigned i = 0; i < n; i++) {
-        hp_result r = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, subnormals, false, c->rays[i], c->triangles[i], 0);
+        float *primary = c->primaries + (size_t)i * p, *secondary = c->secondaries + (size_t)i * s;
+        if (pair == HP_PAIR_RAY_TRIANGLE)
+            kinds[i % (sizeof kinds / sizeof *kinds)](random, primary, secondary);
+        else
+            draw_any(random, first + i, pair, primary, secondary);
+    }
+}
+
+static void test_scalar(const hpt_hashing *what, unsigned n, chunk *c) {
+    unsigned p = hp_object_words(hp_pair_primary(what->pair)), s = hp_object_words(hp_pair_secondary(what->pair));
+    for (unsigned i = 0; i < n; i++) {
+        hp_result r = hp_pipe_test(what->pair, what->subnormals, what->separation, c->primaries + (size_t)i * p,
+                                   c->secondaries + (size_t)i * s, 0);
         c->F[i] = r.F;
         c->T[i] = r.T;
         for (unsigned axis = 0; axis < 3; axis++) c->CP[axis][i] = r.CP[axis];
     }
 }
 
-static void test_wide(const hp_wide_pipe *pipe, hp_subnormals subnormals, unsigned n, chunk *c) {
+static void test_wide(const hp_wide_pipe *pipe, const hpt_hashing *what, unsigned n, chunk *c) {
     hp_pairs_out out = {c->F, c->T, {c->CP[0], c->CP[1], c->CP[2]}};
-    pipe->pairs(c->rays[0], 1, c->triangles[0], n, NULL, subnormals == HP_FLUSH, &out);
+    (what->separation ? pipe->distances : pipe->pairs)(c->primaries, 1, c->secondaries, n, NULL,
+                                                       what->subnormals == HP_FLUSH, &out);
 }
 
 static uint64_t mix(uint64_t hash, const void *word) {
@@ -102,22 +192,21 @@ static uint64_t mix(uint64_t hash, const void *word) {
     return (hash ^ bits_of_word) * 0x100000001B3u;
 }
 
-uint64_t hpt_hash_ray_triangle(const char *isa, hp_subnormals subnormals, uint64_t seed, uint64_t count,
-                               uint64_t *hits) {
-    const hp_wide_pipe *pipe = hp_wide_pipe_of(isa, HP_PAIR_RAY_TRIANGLE);
+uint64_t hpt_hash(const hpt_hashing *what, const char *isa, uint64_t *hits) {
+    static _Thread_local chunk c;
+    const hp_wide_pipe *pipe = hp_wide_pipe_of(isa, what->pair);
     bool scalar = strcmp(isa, "scalar") == 0;
     if (!pipe && !scalar) return 0;
-    hpt_random random = hpt_random_seed(seed);
+    hpt_random random = hpt_random_seed(what->seed);
     uint64_t hash = 0xCBF29CE484222325u;
-    chunk c;
     *hits = 0;
-    for (uint64_t done = 0; done < count; done += CHUNK) {
-        unsigned n = count - done < CHUNK ? (unsigned)(count - done) : CHUNK;
-        draw(&random, n, &c);
+    for (uint64_t done = 0; done < what->count; done += CHUNK) {
+        unsigned n = what->count - done < CHUNK ? (unsigned)(what->count - done) : CHUNK;
+        draw(&random, what->pair, done, n, &c);
         if (scalar)
-            test_scalar(subnormals, n, &c);
+            test_scalar(what, n, &c);
         else
-            test_wide(pipe, subnormals, n, &c);
+            test_wide(pipe, what, n, &c);
         for (unsigned i = 0; i < n; i++) {
             *hits += c.F[i];
             hash = mix(mix(mix(mix(mix(hash, &c.F[i]), &c.T[i]), &c.CP[0][i]), &c.CP[1][i]), &c.CP[2][i]);

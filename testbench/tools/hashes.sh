@@ -1,6 +1,6 @@
 #!/bin/sh
 # hashes.sh "COMPILER OPT"...: builds hash_pipes with each and compares what every instruction set computes with
-# vectors/hashes.txt, on 12 million pairs in each way of underflow. Ends with 'N passed, N failed'. An aarch64 compiler's program
+# vectors/hashes.txt, on 12 million pairs of ray-triangle and 50,000 of each other pipe in each way of underflow. Ends with 'N passed, N failed'. An aarch64 compiler's program
 # runs under qemu, on fewer pairs.
 . testbench/support/check.sh
 
@@ -8,7 +8,7 @@
 hash() {
     build=$1 compiler=$2 count=$3
     shift 3
-    grep -E "^[a-z-]+ [a-z]+ [0-9]+ $count " vectors/hashes.txt >"$build/expected"
+    grep -E "^[a-z+-]+ [a-z]+ [0-9]+ ($count|$((count / 240))) " vectors/hashes.txt >"$build/expected"
     check "$compiler: there are hashes of $count pairs" test -s "$build/expected"
     isas="scalar $("$@" "$build/hash_pipes" --isas)"
     for isa in $isas; do
