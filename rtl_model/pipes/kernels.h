@@ -89,6 +89,7 @@ HP_INLINE void HP_OF(nearest_one)(const num *p, const num *s, bits index, float 
                                   uint32_t *best_F) {
     bits one = constant_bits(1);
     answer a = HP_OF(test)(p, s, index, true);
+    if (!a.any) return;
     num T = HP_NAMED(reload)(best_T);
     bits F_bits = HP_NAMED(load_bits)(best_F);
     flag F = HP_NAMED(same_bits)(F_bits, one);
