@@ -70,6 +70,7 @@ static hp_status ask(hp_device *device, const char *path, const hp_vectors *vect
     hp_query_def def = hp_default_query_def();
     def.pair = vectors->pair;
     def.mode = HP_MODE_ZIP;
+    def.separation = vectors->separation ? HP_SEPARATION_ON : HP_SEPARATION_OFF;
     hp_status status = hp_upload(device, hp_pair_secondary(vectors->pair), vectors->secondaries, vectors->count);
     if (status == HP_OK) status = hp_query(device, &def, vectors->primaries, vectors->count, answers);
     if (status == HP_OK) status = hp_read_counters(device, false, counters);

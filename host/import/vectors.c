@@ -109,10 +109,11 @@ const hp_vector_group *hp_vectors_group_of(const hp_vectors *vectors, size_t rec
  * --------------------------------------------------------------------------------------------------------- */
 
 /* What `// key: value` lines may say, and whether they say it of the file or of a group. */
-typedef enum key { PAIR, NUMERICS, GENERATOR, ORACLE, COUNT, GROUP, WHY, CHECKED, KEYS } key;
+typedef enum key { PAIR, NUMERICS, GENERATOR, ORACLE, COUNT, SEPARATION, GROUP, WHY, CHECKED, KEYS } key;
 static const char *const key_names[KEYS] = {
-    [PAIR] = "pair",   [NUMERICS] = "numerics", [GENERATOR] = "generator", [ORACLE] = "oracle", [COUNT] = "count",
-    [GROUP] = "group", [WHY] = "why",           [CHECKED] = "checked"};
+    [PAIR] = "pair",     [NUMERICS] = "numerics", [GENERATOR] = "generator",
+    [ORACLE] = "oracle", [COUNT] = "count",       [GROUP] = "group",
+    [WHY] = "why",       [CHECKED] = "checked",   [SEPARATION] = "separation"};
 
 typedef struct reader {
     hp_text text;
@@ -188,7 +189,7 @@ static bool parse_numerics(const char *value, hp_numerics *numerics) {
 
 /* The first record is there: makes the vectors from the file's keys. */
 static hp_status begin(reader *r) {
-    for (key k = 0; k < GROUP; k++)
+    for (key k = 0; k <= COUNT; k++)
         if (!r->values[k])
             return hp_text_fault(&r->text, r->fault, "no line '// %s: ...' before the first record", key_names[k]);
     hp_pair pair = hp_pair_from_name(r->values[PAIR]);
@@ -198,8 +199,15 @@ static hp_status begin(reader *r) {
         return hp_text_fault(&r->text, r->fault, "numerics are gradual, flush or any, not '%s'", r->values[NUMERICS]);
     if (!parse_count(r->values[COUNT], &r->promised))
         return hp_text_fault(&r->text, r->fault, "count is no whole number: '%s'", r->values[COUNT]);
+    const char *separation = r->values[SEPARATION] ? r->values[SEPARATION] : "off";
+    bool on = strcmp(separation, "on") == 0;
+    if (!on && strcmp(separation, "off") != 0)
+        return hp_text_fault(&r->text, r->fault, "separation is on or off, not '%s'", separation);
     r->begun = true;
-    return hp_vectors_begin(r->vectors, pair, numerics, r->values[GENERATOR], r->values[ORACLE], r->fault);
+    hp_status status =
+        hp_vectors_begin(r->vectors, pair, numerics, r->values[GENERATOR], r->values[ORACLE], r->fault);
+    r->vectors->separation = on;
+    return status;
 }
 
 static void drop(reader *r, key k) {
@@ -320,6 +328,7 @@ hp_status hp_vectors_write(const hp_vectors *vectors, FILE *file, hp_fault *faul
             "// hitpipe vectors %d\n// pair: %s\n// numerics: %s\n// generator: %s\n// oracle: %s\n// count: %zu\n",
             HP_VECTORS_VERSION, hp_pair_name(vectors->pair), hp_numerics_name(vectors->numerics), vectors->generator,
             vectors->oracle, vectors->count);
+    if (vectors->separation) fprintf(file, "// separation: on\n");
     fprintf(file, "// a record, %u words: %s (%u), %s (%u), F, index, T, CP (3)\n", p + s + HP_VECTOR_ANSWER_WORDS,
             hp_object_name(hp_pair_primary(vectors->pair)), p, hp_object_name(hp_pair_secondary(vectors->pair)), s);
     size_t group = 0;

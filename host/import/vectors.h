@@ -33,6 +33,7 @@ typedef struct hp_vector_group {
 typedef struct hp_vectors {
     hp_pair pair;
     hp_numerics numerics;
+    bool separation; /* T of a miss is the distance */
     char *generator; /* program, its version and seed */
     char *oracle;    /* program and its version */
     size_t count;
@@ -45,7 +46,7 @@ typedef struct hp_vectors {
     size_t room, group_room; /* allocated */
 } hp_vectors;
 
-/* No groups and no records yet. The two strings are copied. HP_ERROR_MEMORY. */
+/* No groups and no records yet, no separation. The two strings are copied. HP_ERROR_MEMORY. */
 hp_status hp_vectors_begin(hp_vectors *vectors, hp_pair pair, hp_numerics numerics, const char *generator,
                            const char *oracle, hp_fault *fault);
 void hp_vectors_free(hp_vectors *vectors);

@@ -62,6 +62,26 @@ static void whole_file_is_read(void **state) {
     hp_vectors_free(&vectors);
 }
 
+static void separation_is_off_unless_said(void **state) {
+    (void)state;
+    static const char *const files[] = {WHOLE, HEADER "// separation: off\n" GROUP RECORD RECORD,
+                                        HEADER "// separation: on\n" GROUP RECORD RECORD};
+    for (unsigned i = 0; i < 3; i++) {
+        hp_vectors vectors;
+        hp_fault fault;
+        char *text;
+        size_t n;
+        assert_int_equal(parse(files[i], &vectors, &fault), HP_OK);
+        assert_int_equal(vectors.separation, i == 2);
+        FILE *file = open_memstream(&text, &n);
+        assert_int_equal(hp_vectors_write(&vectors, file, &fault), HP_OK);
+        fclose(file);
+        assert_int_equal(strstr(text, "// separation: on\n") != NULL, i == 2);
+        free(text);
+        hp_vectors_free(&vectors);
+    }
+}
+
 static void words_keep_every_bit(void **state) {
     (void)state;
     static const uint32_t ray[6] = {0x7FC12345, 0xFF800000, 0x7F800001, 1, 0x80000000, 0xFFFFFFFF};
@@ -151,6 +171,7 @@ static void headers_are_checked(void **state) {
     refused("// hitpipe vectors 1\n// pair: ray-triangle\n// numerics: any\n// generator: g\n// oracle: o\n"
             "// count: 99999999999999999999\n" GROUP RECORD,
             "f.hex:9:1: count is no whole number: '99999999999999999999'");
+    refused(HEADER "// separation: perhaps\n" GROUP RECORD, "f.hex:10:1: separation is on or off, not 'perhaps'");
     refused(HEADER "// count: 2\n", "f.hex:7:1: 'count' a second time");
     refused("// hitpipe vectors 1\n// pair:\n", "f.hex:2:1: 'pair' says nothing");
     refused(HEADER GROUP RECORD "// oracle: another\n", "f.hex:10:1: 'oracle' after the first group");
@@ -217,7 +238,7 @@ int main(void) {
         cmocka_unit_test(headers_are_checked),  cmocka_unit_test(last_line_needs_no_newline),
         cmocka_unit_test(groups_are_checked),   cmocka_unit_test(records_are_checked),
         cmocka_unit_test(absent_file_is_named), cmocka_unit_test(zero_bytes_are_no_words),
-        cmocka_unit_test(full_disk_shows),
+        cmocka_unit_test(full_disk_shows),      cmocka_unit_test(separation_is_off_unless_said),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
