@@ -5,7 +5,7 @@
 
 #include "body.h"
 
-enum { HPT_VERTICES = 3000, HPT_FACES = 2 * HPT_VERTICES };
+enum { HPT_VERTICES = 2000, HPT_FACES = 2 * HPT_VERTICES };
 
 /* A point of a body: one point of its hull, one end of each segment, one rim point of each disc. */
 typedef struct hpt_corner {
@@ -23,5 +23,21 @@ typedef struct hpt_search {
     hpt_corner corner[HPT_VERTICES];
     unsigned face[HPT_FACES][3];
 } hpt_search;
+
+/* Searches, of a body times `scale`, a power of two that brings its size to between 1/2 and 1; its ball is left out.
+ */
+void hpt_search_in_double(const hpt_body *body, double scale, hpt_search *found);
+void hpt_search_in_quad(const hpt_body *body, double scale, hpt_search *found);
+/* The distance of the origin from that body, 0 inside, by the search in double alone. */
+double hpt_search_nearest(const hpt_body *body, double scale);
+
+/* The signed distance of that body is no less than `lower` and no greater than `upper`: true of any search's result,
+ * a wrong one too, if its weights are none of them negative and its corners name points, ends and discs of the body.
+ */
+typedef struct hpt_bounds {
+    hp_quad lower, upper;
+} hpt_bounds;
+
+hpt_bounds hpt_certify(const hpt_body *body, double scale, const hpt_search *found);
 
 #endif

@@ -5,7 +5,7 @@
 
 #include "search_hull.h"
 
-static void HPT_NAMED(keep_simplex)(const HPT_NAMED(simplex) * s, const REAL direction[3], hpt_search *found) {
+HPT_LOCAL void HPT_NAMED(keep_simplex)(const HPT_NAMED(simplex) * s, const REAL direction[3], hpt_search *found) {
     for (int k = 0; k < 3; k++) found->direction[k] = direction[k];
     found->members = s->n;
     for (unsigned i = 0; i < s->n; i++) {
@@ -14,14 +14,14 @@ static void HPT_NAMED(keep_simplex)(const HPT_NAMED(simplex) * s, const REAL dir
     }
 }
 
-static void HPT_NAMED(keep_hull)(const HPT_NAMED(hull) * hull, hpt_search *found) {
+HPT_LOCAL void HPT_NAMED(keep_hull)(const HPT_NAMED(hull) * hull, hpt_search *found) {
     found->corners = hull->vertices;
     for (unsigned i = 0; i < hull->vertices; i++) found->corner[i] = hull->vertex[i].name;
     for (unsigned i = 0; i < hull->faces; i++)
         if (hull->face[i].alive) memcpy(found->face[found->faces++], hull->face[i].v, sizeof found->face[0]);
 }
 
-static void HPT_NAMED(look_inside)(const HPT_NAMED(body) * body, hpt_search *found) {
+HPT_LOCAL void HPT_NAMED(look_inside)(const HPT_NAMED(body) * body, hpt_search *found) {
     HPT_NAMED(hull) *hull = malloc(sizeof *hull);
     if (!hull) abort();
     hull->body = body;
@@ -37,7 +37,7 @@ static void HPT_NAMED(look_inside)(const HPT_NAMED(body) * body, hpt_search *fou
 }
 
 /* `scale` brings the body's size to about 1. */
-static void HPT_NAMED(search)(const hpt_body *from, hp_quad scale, hpt_search *found) {
+HPT_LOCAL void HPT_NAMED(search)(const hpt_body *from, hp_quad scale, hpt_search *found) {
     HPT_NAMED(body) body;
     HPT_NAMED(simplex) simplex;
     REAL direction[3];

@@ -9,6 +9,7 @@ typedef struct HPT_NAMED(face) {
     unsigned v[3], next[3]; /* next[i] is the face beyond the edge from v[i] to v[i + 1] */
     REAL normal[3], offset; /* outward, of length 1; 0 when the face has no area */
     REAL key;               /* its distance from the origin, as far as known */
+    REAL slack;             /* what rounding can have turned the normal by: the narrower the face the more */
     bool alive, final, seen;
 } HPT_NAMED(face);
 
@@ -27,7 +28,7 @@ typedef struct HPT_NAMED(hull) {
     unsigned edges;
 } HPT_NAMED(hull);
 
-static unsigned HPT_NAMED(new_face)(HPT_NAMED(hull) * hull, unsigned a, unsigned b, unsigned c) {
+HPT_LOCAL unsigned HPT_NAMED(new_face)(HPT_NAMED(hull) * hull, unsigned a, unsigned b, unsigned c) {
     unsigned i = hull->spares ? hull->spare[--hull->spares] : hull->faces++;
     HPT_NAMED(face) *f = &hull->face[i];
     *f = (HPT_NAMED(face)){.v = {a, b, c}, .alive = true};
@@ -37,18 +38,29 @@ static unsigned HPT_NAMED(new_face)(HPT_NAMED(hull) * hull, unsigned a, unsigned
     HPT_NAMED(sub)(hull->vertex[c].at, p, ac);
     HPT_NAMED(cross)(ab, ac, f->normal);
     REAL length = HPT_NAMED(root)(HPT_NAMED(dot)(f->normal, f->normal));
+    REAL longest =
+        HPT_NAMED(root)(HPT_NAMED(dot)(ab, ab) + HPT_NAMED(dot)(ac, ac)); /* no shorter than any edge / 2 */
+    f->slack = length > 0 ? HPT_EPSILON * longest / length : 0;
     for (int k = 0; k < 3; k++) f->normal[k] = length > 0 ? f->normal[k] / length : 0;
     f->offset = f->key = HPT_NAMED(dot)(f->normal, p);
     f->final = !(length > 0);
     return i;
 }
 
-static REAL HPT_NAMED(beyond)(const HPT_NAMED(face) * f, const REAL at[3]) {
+HPT_LOCAL REAL HPT_NAMED(beyond)(const HPT_NAMED(face) * f, const REAL at[3]) {
     return HPT_NAMED(dot)(f->normal, at) - f->offset;
 }
 
+/* Whether a point is beyond a face, rounding allowed for. */
+HPT_LOCAL bool HPT_NAMED(sees)(const HPT_NAMED(hull) * hull, const HPT_NAMED(face) * f, const REAL at[3]) {
+    REAL arm[3], distance = 0;
+    HPT_NAMED(sub)(at, hull->vertex[f->v[0]].at, arm);
+    for (int k = 0; k < 3; k++) distance += HPT_NAMED(absolute)(arm[k]);
+    return HPT_NAMED(beyond)(f, at) > HPT_EPSILON + f->slack * distance;
+}
+
 /* The support point along d, whose length is 1 or nearly; keeps the least upper bound. */
-static void HPT_NAMED(ask)(HPT_NAMED(hull) * hull, const REAL d[3], HPT_NAMED(vertex) * to) {
+HPT_LOCAL void HPT_NAMED(ask)(HPT_NAMED(hull) * hull, const REAL d[3], HPT_NAMED(vertex) * to) {
     REAL reach = HPT_NAMED(support)(hull->body, d, to);
     if (reach >= hull->upper) return;
     hull->upper = reach;
@@ -58,8 +70,8 @@ static void HPT_NAMED(ask)(HPT_NAMED(hull) * hull, const REAL d[3], HPT_NAMED(ve
 /* ---- the first four corners ---- */
 
 /* Keeps in `best` the farther of both ends along d, by the measure |(x - base).d|. */
-static REAL HPT_NAMED(farther)(HPT_NAMED(hull) * hull, const REAL d[3], const REAL base[3], HPT_NAMED(vertex) * best,
-                               REAL most) {
+HPT_LOCAL REAL HPT_NAMED(farther)(HPT_NAMED(hull) * hull, const REAL d[3], const REAL base[3],
+                                  HPT_NAMED(vertex) * best, REAL most) {
     for (int sign = -1; sign <= 1; sign += 2) {
         HPT_NAMED(vertex) w;
         REAL along[3] = {sign * d[0], sign * d[1], sign * d[2]}, arm[3];
@@ -73,13 +85,13 @@ static REAL HPT_NAMED(farther)(HPT_NAMED(hull) * hull, const REAL d[3], const RE
     return most;
 }
 
-static void HPT_NAMED(unit)(REAL a[3]) {
+HPT_LOCAL void HPT_NAMED(unit)(REAL a[3]) {
     REAL length = HPT_NAMED(root)(HPT_NAMED(dot)(a, a));
     for (int k = 0; k < 3; k++) a[k] = length > 0 ? a[k] / length : 0;
 }
 
 /* Two unit vectors across u. */
-static void HPT_NAMED(across)(const REAL u[3], REAL a[3], REAL b[3]) {
+HPT_LOCAL void HPT_NAMED(across)(const REAL u[3], REAL a[3], REAL b[3]) {
     int least = 0;
     for (int k = 1; k < 3; k++)
         if (HPT_NAMED(absolute)(u[k]) < HPT_NAMED(absolute)(u[least])) least = k;
@@ -91,7 +103,7 @@ static void HPT_NAMED(across)(const REAL u[3], REAL a[3], REAL b[3]) {
 }
 
 /* False when the body is flat within the tolerance: then the direction across it is known. */
-static bool HPT_NAMED(first_corners)(HPT_NAMED(hull) * hull) {
+HPT_LOCAL bool HPT_NAMED(first_corners)(HPT_NAMED(hull) * hull) {
     static const int tries[7][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, 1, 1}};
     HPT_NAMED(vertex) *v = hull->vertex;
     REAL most = 0, u[3], a[3], b[3], n[3];
@@ -114,14 +126,14 @@ static bool HPT_NAMED(first_corners)(HPT_NAMED(hull) * hull) {
     return HPT_NAMED(farther)(hull, n, v[0].at, &v[3], 0) > HPT_THIN;
 }
 
-static void HPT_NAMED(join)(HPT_NAMED(hull) * hull, unsigned f, unsigned i, unsigned g) {
+HPT_LOCAL void HPT_NAMED(join)(HPT_NAMED(hull) * hull, unsigned f, unsigned i, unsigned g) {
     const unsigned *v = hull->face[f].v;
     hull->face[f].next[i] = g;
     for (unsigned k = 0; k < 3; k++)
         if (hull->face[g].v[k] == v[(i + 1) % 3]) hull->face[g].next[k] = f;
 }
 
-static void HPT_NAMED(first_faces)(HPT_NAMED(hull) * hull) {
+HPT_LOCAL void HPT_NAMED(first_faces)(HPT_NAMED(hull) * hull) {
     HPT_NAMED(vertex) *v = hull->vertex;
     if (HPT_NAMED(volume)(v[0].at, v[1].at, v[2].at, v[3].at) > 0) {
         HPT_NAMED(vertex) swapped = v[1];
@@ -140,7 +152,7 @@ static void HPT_NAMED(first_faces)(HPT_NAMED(hull) * hull) {
 /* ---- growing ---- */
 
 /* Takes away the faces that w sees, from the first on, and lists the edges round them. */
-static void HPT_NAMED(open_up)(HPT_NAMED(hull) * hull, unsigned first, const REAL w[3]) {
+HPT_LOCAL void HPT_NAMED(open_up)(HPT_NAMED(hull) * hull, unsigned first, const REAL w[3]) {
     unsigned piled = 0;
     hull->edges = 0;
     hull->pile[piled++] = first;
@@ -151,7 +163,7 @@ static void HPT_NAMED(open_up)(HPT_NAMED(hull) * hull, unsigned first, const REA
             unsigned g = hull->face[f].next[i];
             HPT_NAMED(face) *other = &hull->face[g];
             if (other->seen) continue;
-            if (HPT_NAMED(beyond)(other, w) > HPT_EPSILON) {
+            if (HPT_NAMED(sees)(hull, other, w)) {
                 other->seen = true;
                 hull->pile[piled++] = g;
             } else {
@@ -166,7 +178,7 @@ static void HPT_NAMED(open_up)(HPT_NAMED(hull) * hull, unsigned first, const REA
 }
 
 /* A horizon edge listed while the face beyond was still to be seen is none. Then: one loop, each corner once? */
-static bool HPT_NAMED(is_loop)(HPT_NAMED(hull) * hull) {
+HPT_LOCAL bool HPT_NAMED(is_loop)(HPT_NAMED(hull) * hull) {
     unsigned kept = 0;
     for (unsigned e = 0; e < hull->edges; e++)
         if (!hull->face[hull->horizon[e].beyond].seen) hull->horizon[kept++] = hull->horizon[e];
@@ -185,7 +197,7 @@ static bool HPT_NAMED(is_loop)(HPT_NAMED(hull) * hull) {
     return e == 0 && length == kept && kept >= 3;
 }
 
-static void HPT_NAMED(bury)(HPT_NAMED(hull) * hull) {
+HPT_LOCAL void HPT_NAMED(bury)(HPT_NAMED(hull) * hull) {
     for (unsigned i = 0; i < hull->faces; i++)
         if (hull->face[i].seen && hull->face[i].alive) {
             hull->face[i].alive = hull->face[i].seen = false;
@@ -194,7 +206,7 @@ static void HPT_NAMED(bury)(HPT_NAMED(hull) * hull) {
 }
 
 /* Joins the corner to the hull; false when rounding has made that impossible: the hull stays as it was. */
-static bool HPT_NAMED(take_in)(HPT_NAMED(hull) * hull, unsigned face, const HPT_NAMED(vertex) * w) {
+HPT_LOCAL bool HPT_NAMED(take_in)(HPT_NAMED(hull) * hull, unsigned face, const HPT_NAMED(vertex) * w) {
     if (hull->vertices == HPT_VERTICES) return false;
     HPT_NAMED(open_up)(hull, face, w->at);
     if (!HPT_NAMED(is_loop)(hull)) {
@@ -217,8 +229,17 @@ static bool HPT_NAMED(take_in)(HPT_NAMED(hull) * hull, unsigned face, const HPT_
     return true;
 }
 
+/* A corner of the hull is beyond none of its faces, whatever a narrow one says. */
+HPT_LOCAL bool HPT_NAMED(is_corner)(const HPT_NAMED(hull) * hull, const REAL at[3]) {
+    for (unsigned i = 0; i < hull->vertices; i++) {
+        const REAL *v = hull->vertex[i].at;
+        if (v[0] == at[0] && v[1] == at[1] && v[2] == at[2]) return true;
+    }
+    return false;
+}
+
 /* The face of the least key that may still hold a better bound, or HPT_FACES. */
-static unsigned HPT_NAMED(nearest_face)(const HPT_NAMED(hull) * hull) {
+HPT_LOCAL unsigned HPT_NAMED(nearest_face)(const HPT_NAMED(hull) * hull) {
     unsigned best = HPT_FACES;
     REAL least = hull->upper - HPT_TOLERANCE;
     for (unsigned i = 0; i < hull->faces; i++)
@@ -231,7 +252,7 @@ static unsigned HPT_NAMED(nearest_face)(const HPT_NAMED(hull) * hull) {
 
 /* Where the foot of the origin's perpendicular lies off a face that does not have the origin outside, as with a face
  * too narrow for its normal to mean much, the key becomes the distance of the triangle itself. True if it did. */
-static bool HPT_NAMED(better_key)(HPT_NAMED(hull) * hull, HPT_NAMED(face) * f, REAL nearest[3]) {
+HPT_LOCAL bool HPT_NAMED(better_key)(HPT_NAMED(hull) * hull, HPT_NAMED(face) * f, REAL nearest[3]) {
     const REAL *p[3];
     REAL weight[4];
     unsigned used = 0;
@@ -242,7 +263,7 @@ static bool HPT_NAMED(better_key)(HPT_NAMED(hull) * hull, HPT_NAMED(face) * f, R
     return true;
 }
 
-static void HPT_NAMED(grow)(HPT_NAMED(hull) * hull) {
+HPT_LOCAL void HPT_NAMED(grow)(HPT_NAMED(hull) * hull) {
     for (;;) {
         unsigned i = HPT_NAMED(nearest_face)(hull);
         if (i == HPT_FACES) return;
@@ -257,6 +278,7 @@ static void HPT_NAMED(grow)(HPT_NAMED(hull) * hull) {
             HPT_NAMED(ask)(hull, nearest, &aside);
             if (HPT_NAMED(beyond)(f, aside.at) > HPT_NAMED(beyond)(f, w.at)) w = aside;
         }
-        if (HPT_NAMED(beyond)(f, w.at) <= HPT_EPSILON || !HPT_NAMED(take_in)(hull, i, &w)) f->final = true;
+        if (!HPT_NAMED(sees)(hull, f, w.at) || HPT_NAMED(is_corner)(hull, w.at) || !HPT_NAMED(take_in)(hull, i, &w))
+            f->final = true;
     }
 }

@@ -12,7 +12,7 @@ typedef struct HPT_NAMED(simplex) {
     bool around; /* four corners, the origin between them */
 } HPT_NAMED(simplex);
 
-static REAL HPT_NAMED(volume)(const REAL a[3], const REAL b[3], const REAL c[3], const REAL d[3]) {
+HPT_LOCAL REAL HPT_NAMED(volume)(const REAL a[3], const REAL b[3], const REAL c[3], const REAL d[3]) {
     REAL ab[3], ac[3], ad[3], n[3];
     HPT_NAMED(sub)(b, a, ab);
     HPT_NAMED(sub)(c, a, ac);
@@ -21,7 +21,7 @@ static REAL HPT_NAMED(volume)(const REAL a[3], const REAL b[3], const REAL c[3],
     return HPT_NAMED(dot)(n, ad);
 }
 
-static bool HPT_NAMED(holds_origin)(HPT_NAMED(simplex) * s) {
+HPT_LOCAL bool HPT_NAMED(holds_origin)(HPT_NAMED(simplex) * s) {
     const REAL zero[3] = {0, 0, 0};
     REAL whole = HPT_NAMED(volume)(s->corner[0].at, s->corner[1].at, s->corner[2].at, s->corner[3].at);
     if (HPT_NAMED(absolute)(whole) < HPT_EPSILON) return false;
@@ -35,7 +35,7 @@ static bool HPT_NAMED(holds_origin)(HPT_NAMED(simplex) * s) {
 }
 
 /* Keeps the corners that v needs. */
-static void HPT_NAMED(reduce)(HPT_NAMED(simplex) * s) {
+HPT_LOCAL void HPT_NAMED(reduce)(HPT_NAMED(simplex) * s) {
     const REAL *p[4];
     REAL weight[4];
     unsigned used = 0, kept = 0;
@@ -56,7 +56,7 @@ static void HPT_NAMED(reduce)(HPT_NAMED(simplex) * s) {
 
 /* Leaves the nearest point in the simplex and the best direction in `direction`. True when lower and upper bound meet
  * within the tolerance. */
-static bool HPT_NAMED(find_nearest)(const HPT_NAMED(body) * body, HPT_NAMED(simplex) * s, REAL direction[3]) {
+HPT_LOCAL bool HPT_NAMED(find_nearest)(const HPT_NAMED(body) * body, HPT_NAMED(simplex) * s, REAL direction[3]) {
     const REAL start[3] = {1, (REAL)0.25, (REAL)0.5};
     REAL best = -4;
     memcpy(direction, start, sizeof start);

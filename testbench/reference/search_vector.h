@@ -1,4 +1,4 @@
-/* Vectors, bodies and support points under one number type. No include guard: signed_distance.c includes it once per
+/* Vectors, bodies and support points under one number type. No include guard: search_numbers.h includes it once per
  * type, with REAL the type and HPT_NAMED(word) its names. */
 
 typedef struct HPT_NAMED(body) {
@@ -11,29 +11,29 @@ typedef struct HPT_NAMED(vertex) {
     hpt_corner name;
 } HPT_NAMED(vertex);
 
-static REAL HPT_NAMED(dot)(const REAL a[3], const REAL b[3]) {
+HPT_LOCAL REAL HPT_NAMED(dot)(const REAL a[3], const REAL b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void HPT_NAMED(cross)(const REAL a[3], const REAL b[3], REAL to[3]) {
+HPT_LOCAL void HPT_NAMED(cross)(const REAL a[3], const REAL b[3], REAL to[3]) {
     to[0] = a[1] * b[2] - a[2] * b[1];
     to[1] = a[2] * b[0] - a[0] * b[2];
     to[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-static void HPT_NAMED(sub)(const REAL a[3], const REAL b[3], REAL to[3]) {
+HPT_LOCAL void HPT_NAMED(sub)(const REAL a[3], const REAL b[3], REAL to[3]) {
     for (int i = 0; i < 3; i++) to[i] = a[i] - b[i];
 }
 
-static void HPT_NAMED(add_scaled)(REAL to[3], REAL k, const REAL a[3]) {
+HPT_LOCAL void HPT_NAMED(add_scaled)(REAL to[3], REAL k, const REAL a[3]) {
     for (int i = 0; i < 3; i++) to[i] += k * a[i];
 }
 
-static REAL HPT_NAMED(absolute)(REAL a) {
+HPT_LOCAL REAL HPT_NAMED(absolute)(REAL a) {
     return a < 0 ? -a : a;
 }
 
-static void HPT_NAMED(read_body)(const hpt_body *from, REAL scale, HPT_NAMED(body) * to) {
+HPT_LOCAL void HPT_NAMED(read_body)(const hpt_body *from, REAL scale, HPT_NAMED(body) * to) {
     to->points = from->points;
     to->segments = from->segments;
     to->discs = from->discs;
@@ -46,7 +46,7 @@ static void HPT_NAMED(read_body)(const hpt_body *from, REAL scale, HPT_NAMED(bod
 }
 
 /* to += the rim point of disc i towards d. None when d is along the axis: then the centre is as good. */
-static void HPT_NAMED(add_rim)(const HPT_NAMED(body) * body, unsigned i, const REAL d[3], REAL to[3]) {
+HPT_LOCAL void HPT_NAMED(add_rim)(const HPT_NAMED(body) * body, unsigned i, const REAL d[3], REAL to[3]) {
     REAL out[3] = {d[0], d[1], d[2]};
     for (int twice = 0; twice < 2; twice++)
         HPT_NAMED(add_scaled)(out, -HPT_NAMED(dot)(out, body->axis[i]), body->axis[i]);
@@ -55,7 +55,7 @@ static void HPT_NAMED(add_rim)(const HPT_NAMED(body) * body, unsigned i, const R
 }
 
 /* The point that a name stands for. */
-static void HPT_NAMED(find_corner)(const HPT_NAMED(body) * body, const hpt_corner *name, REAL at[3]) {
+HPT_LOCAL void HPT_NAMED(find_corner)(const HPT_NAMED(body) * body, const hpt_corner *name, REAL at[3]) {
     memcpy(at, body->point[name->point], sizeof body->point[0]);
     for (unsigned i = 0; i < body->segments; i++)
         HPT_NAMED(add_scaled)(at, name->ends >> i & 1 ? 1 : -1, body->segment[i]);
@@ -66,7 +66,7 @@ static void HPT_NAMED(find_corner)(const HPT_NAMED(body) * body, const hpt_corne
 }
 
 /* The farthest point of the body in direction d; returns how far: d . point. */
-static REAL HPT_NAMED(support)(const HPT_NAMED(body) * body, const REAL d[3], HPT_NAMED(vertex) * to) {
+HPT_LOCAL REAL HPT_NAMED(support)(const HPT_NAMED(body) * body, const REAL d[3], HPT_NAMED(vertex) * to) {
     hpt_corner *name = &to->name;
     name->point = name->ends = 0;
     for (unsigned i = 1; i < body->points; i++)
@@ -81,7 +81,7 @@ static REAL HPT_NAMED(support)(const HPT_NAMED(body) * body, const REAL d[3], HP
 
 /* Weights of the point of the triangle (or segment, or point: n = 3, 2, 1) nearest to the origin, if it lies in its
  * relative inside; else false. */
-static bool HPT_NAMED(inner_weights)(const REAL *const p[3], int n, REAL weight[3]) {
+HPT_LOCAL bool HPT_NAMED(inner_weights)(const REAL *const p[3], int n, REAL weight[3]) {
     REAL a[3], b[3];
     weight[0] = 1;
     if (n == 1) return true;
@@ -103,14 +103,14 @@ static bool HPT_NAMED(inner_weights)(const REAL *const p[3], int n, REAL weight[
 }
 
 /* The sum of weighted points. */
-static void HPT_NAMED(mix)(const REAL *const p[3], int n, const REAL weight[3], REAL to[3]) {
+HPT_LOCAL void HPT_NAMED(mix)(const REAL *const p[3], int n, const REAL weight[3], REAL to[3]) {
     to[0] = to[1] = to[2] = 0;
     for (int i = 0; i < n; i++) HPT_NAMED(add_scaled)(to, weight[i], p[i]);
 }
 
 /* The nearest point of points p[0..n) to the origin on any of their points, edges and triangles: `used` has bit i
  * when p[i] takes part, with its weight. Returns its square distance. */
-static REAL HPT_NAMED(nearest_of)(const REAL *const p[], int n, REAL weight[4], unsigned *used, REAL at[3]) {
+HPT_LOCAL REAL HPT_NAMED(nearest_of)(const REAL *const p[], int n, REAL weight[4], unsigned *used, REAL at[3]) {
     REAL least = -1;
     for (unsigned set = 1; set < 1u << n; set++) {
         const REAL *chosen[4];
