@@ -1,5 +1,5 @@
 /* hitpipe info: the boards there are, the knobs of one, and what its pipes are made of. */
-#include "host/cli/cli.h"
+#include "host/cli/pair.h"
 #include "host/output/file.h"
 #include "host/output/report.h"
 
@@ -51,62 +51,81 @@ static const struct argp argp = {
     .options = option_table,
     .parser = parse,
     .doc = "Shows the boards found and what each can do.\v"
-           "Of the pipes: operators as counted in the operator graph; levels: operators on the longest path; clocks: "
-           "latency; interval: clocks between two tests in a lane.",
+           "Of the pipes: operators as counted in the operator graph, those of a loop once; levels: operators on the "
+           "longest path; clocks: latency; interval: clocks between two tests in a lane.",
     .children = children,
 };
 
 /* ---- pipes ---- */
 
-static const hp_pair pairs[] = {
-#define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, prepared) HP_PAIR_##NAME,
-#include <hitpipe/pairs.def>
-#undef HP_PAIR
+/* The numbers of a pipe, under these keys and, those with a column, in the table. */
+static const struct cost_field {
+    const char *key, *column;
+    size_t offset; /* in hp_pipe_cost */
+    int width;
+} cost_fields[] = {
+    {"multipliers", "mul", offsetof(hp_pipe_cost, multipliers), 6},
+    {"dividers", "div", offsetof(hp_pipe_cost, dividers), 5},
+    {"square_roots", "sqrt", offsetof(hp_pipe_cost, square_roots), 6},
+    {"adders", "add", offsetof(hp_pipe_cost, adders), 6},
+    {"subtractors", "sub", offsetof(hp_pipe_cost, subtractors), 6},
+    {"comparators", "cmp", offsetof(hp_pipe_cost, comparators), 6},
+    {"selects", "select", offsetof(hp_pipe_cost, selects), 8},
+    {"ands", "and", offsetof(hp_pipe_cost, ands), 5},
+    {"ors", "or", offsetof(hp_pipe_cost, ors), 5},
+    {"levels", "levels", offsetof(hp_pipe_cost, levels), 9},
+    {"clocks", "clocks", offsetof(hp_pipe_cost, clocks), 9},
+    {"interval", "interval", offsetof(hp_pipe_cost, interval), 10},
+    {"inputs", NULL, offsetof(hp_pipe_cost, inputs), 0},
+    {"outputs", NULL, offsetof(hp_pipe_cost, outputs), 0},
+    {"clocks_F", NULL, offsetof(hp_pipe_cost, clocks_F), 0},
+    {"clocks_T", NULL, offsetof(hp_pipe_cost, clocks_T), 0},
+    {"clocks_CP", NULL, offsetof(hp_pipe_cost, clocks_CP), 0},
 };
 
-enum { PAIR_COUNT = sizeof pairs / sizeof pairs[0] };
+enum { COST_FIELDS = sizeof cost_fields / sizeof cost_fields[0] };
+
+static unsigned cost_number(const hp_pipe_cost *cost, const struct cost_field *field) {
+    unsigned number;
+    memcpy(&number, (const char *)cost + field->offset, sizeof number);
+    return number;
+}
+
+static void put_cost(json_t *json, const hp_pipe_cost *cost) {
+    for (const struct cost_field *field = cost_fields; field < cost_fields + COST_FIELDS; field++)
+        hp_report_set(json, field->key, json_integer(cost_number(cost, field)));
+}
 
 static json_t *pipe_json(hp_pair pair, const hp_config *board) {
-    hp_pipe_cost cost = hp_pipe_cost_of(pair, false, board);
-    json_t *pipe = json_object();
+    hp_pipe_cost plain = hp_pipe_cost_of(pair, false, board), separating = hp_pipe_cost_of(pair, true, board);
+    json_t *pipe = json_object(), *with = json_object();
     hp_report_set(pipe, "pair", json_string(hp_pair_name(pair)));
     hp_report_set(pipe, "resident", json_boolean(board->pipes >> pair & 1));
-    const struct {
-        const char *key;
-        unsigned value;
-    } counts[] = {
-        {"multipliers", cost.multipliers},
-        {"dividers", cost.dividers},
-        {"square_roots", cost.square_roots},
-        {"adders", cost.adders},
-        {"subtractors", cost.subtractors},
-        {"comparators", cost.comparators},
-        {"ands", cost.ands},
-        {"ors", cost.ors},
-        {"selects", cost.selects},
-        {"inputs", cost.inputs},
-        {"outputs", cost.outputs},
-        {"levels", cost.levels},
-        {"clocks", cost.clocks},
-        {"clocks_F", cost.clocks_F},
-        {"clocks_T", cost.clocks_T},
-        {"clocks_CP", cost.clocks_CP},
-        {"interval", cost.interval},
-    };
-    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++)
-        hp_report_set(pipe, counts[i].key, json_integer(counts[i].value));
+    put_cost(pipe, &plain);
+    put_cost(with, &separating);
+    hp_report_set(pipe, "separation", with);
     return pipe;
 }
 
+static void print_cost(const char *name, const hp_pipe_cost *cost, const char *remark) {
+    printf("%-19s", name);
+    for (const struct cost_field *field = cost_fields; field < cost_fields + COST_FIELDS; field++)
+        if (field->column) printf("%*u", field->width, cost_number(cost, field));
+    printf("%s\n", remark);
+}
+
 static void print_pipes(const hp_config *board) {
-    printf("Pipes under the operator table of board '%s':\n\n", board->name);
-    printf("%-18s %4s %4s %5s %4s %4s %4s %4s %7s %7s %9s\n", "pair", "mul", "div", "sqrt", "add", "sub", "cmp",
-           "and", "levels", "clocks", "interval");
-    for (size_t i = 0; i < PAIR_COUNT; i++) {
-        hp_pipe_cost cost = hp_pipe_cost_of(pairs[i], false, board);
-        printf("%-18s %4u %4u %5u %4u %4u %4u %4u %7u %7u %9u%s\n", hp_pair_name(pairs[i]), cost.multipliers,
-               cost.dividers, cost.square_roots, cost.adders, cost.subtractors, cost.comparators, cost.ands,
-               cost.levels, cost.clocks, cost.interval, board->pipes >> pairs[i] & 1 ? "" : "  (not resident)");
+    printf(
+        "Pipes under the operator table of board '%s', and below each the same with the distance of a miss:\n\n%-19s",
+        board->name, "pair");
+    for (const struct cost_field *field = cost_fields; field < cost_fields + COST_FIELDS; field++)
+        if (field->column) printf("%*s", field->width, field->column);
+    putchar('\n');
+    for (size_t i = 0; i < hp_cli_pair_count; i++) {
+        hp_pair pair = hp_cli_pairs[i];
+        hp_pipe_cost plain = hp_pipe_cost_of(pair, false, board), separating = hp_pipe_cost_of(pair, true, board);
+        print_cost(hp_pair_name(pair), &plain, board->pipes >> pair & 1 ? "" : "  not resident");
+        print_cost("  with separation", &separating, "");
     }
 }
 
@@ -136,18 +155,10 @@ static void print_config(const hp_config *board) {
 
 /* ---- boards ---- */
 
-static void pair_names(uint32_t resident, char *text, size_t room) {
-    size_t at = 0;
-    snprintf(text, room, "%s", resident ? "" : "none");
-    for (size_t i = 0; i < PAIR_COUNT && at < room; i++)
-        if (resident >> pairs[i] & 1)
-            at += (size_t)snprintf(text + at, room - at, "%s%s", at ? ", " : "", hp_pair_name(pairs[i]));
-}
-
 static void print_board(const hp_device *device, const hp_config *config) {
     const hp_identity *board = hp_identify(device);
     char names[512], count[HP_COUNT_TEXT];
-    pair_names(board->pairs, names, sizeof names);
+    hp_cli_pair_names(board->pairs, names, sizeof names);
     printf("target     %s\nboard      %s, protocol %u\nengine     %s, arithmetic on %s\n", board->target, board->name,
            board->version, board->engine, board->isa);
     printf("clock      %.6g MHz, lanes: %u, %s, subnormals %s\n", (double)board->clock_hz / 1e6, board->lanes,
@@ -166,7 +177,7 @@ static void print_board(const hp_device *device, const hp_config *config) {
 static json_t *board_json(const hp_device *device) {
     const hp_identity *board = hp_identify(device);
     char names[512];
-    pair_names(board->pairs, names, sizeof names);
+    hp_cli_pair_names(board->pairs, names, sizeof names);
     json_t *json = hp_report_new(device);
     hp_report_set(json, "protocol", json_integer(board->version));
     hp_report_set(json, "clock_hz", json_integer((json_int_t)board->clock_hz));
@@ -208,7 +219,7 @@ static hp_status show_boards(info_options *info, hp_fault *fault) {
 
 static hp_status show_pipes_json(const hp_config *board, hp_fault *fault) {
     json_t *pipes = json_array();
-    for (size_t i = 0; i < PAIR_COUNT; i++) json_array_append_new(pipes, pipe_json(pairs[i], board));
+    for (size_t i = 0; i < hp_cli_pair_count; i++) json_array_append_new(pipes, pipe_json(hp_cli_pairs[i], board));
     hp_status status = hp_report_write(pipes, "-", fault);
     json_decref(pipes);
     return status;

@@ -1,5 +1,5 @@
 /* hitpipe query PAIR: primaries of one CSV file against secondaries of another. */
-#include "host/cli/cli.h"
+#include "host/cli/pair.h"
 #include "host/import/csv.h"
 #include "host/output/file.h"
 #include "host/output/report.h"
@@ -9,7 +9,15 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { KEY_PRIMARY = 'p', KEY_SECONDARY = 's', KEY_MODE = 'm', KEY_OUT = 'o', KEY_TRANSFORM = 't' };
+enum {
+    KEY_PRIMARY = 'p',
+    KEY_SECONDARY = 's',
+    KEY_MODE = 'm',
+    KEY_OUT = 'o',
+    KEY_TRANSFORM = 't',
+    KEY_NEAREST = 'n',
+    KEY_SEPARATION = 0x2000
+};
 
 typedef struct query_options {
     hp_cli cli;
@@ -23,6 +31,9 @@ static const struct argp_option option_table[] = {
     {"primary", KEY_PRIMARY, "P.csv", 0, "primaries, one a line, words in the order of the table below", 1},
     {"secondary", KEY_SECONDARY, "S.csv", 0, "secondaries, likewise", 1},
     {"mode", KEY_MODE, "MODE", 0, "closest (default), any, all, or zip: primary i against secondary i", 1},
+    {"nearest", KEY_NEAREST, NULL, 0, "mode closest: a primary without a hit shows the secondary it misses least", 1},
+    {"separation", KEY_SEPARATION, "on|off", 0,
+     "whether T of a miss is the distance or inf (default: on in modes all and zip and with --nearest)", 1},
     {"out", KEY_OUT, "R.csv", 0, "results: primary,secondary,F,T,cpx,cpy,cpz (default: standard output)", 1},
     {"transform", KEY_TRANSFORM, "12 NUMBERS", 0, "move the secondaries by this 3x4 matrix, row by row", 1},
     {0},
@@ -34,11 +45,18 @@ static void set_transform(query_options *query, const char *text, struct argp_st
     query->moved = true;
 }
 
+static void set_separation(query_options *query, const char *text, struct argp_state *state) {
+    bool on = strcmp(text, "on") == 0;
+    if (!on && strcmp(text, "off") != 0) argp_error(state, "--separation is on or off, not '%s'", text);
+    query->def.separation = on ? HP_SEPARATION_ON : HP_SEPARATION_OFF;
+}
+
 static void check_complete(query_options *query, struct argp_state *state) {
-    if (!query->pair) argp_error(state, "which pair? For example ray-triangle");
-    query->def.pair = hp_pair_from_name(query->pair);
-    if (!query->def.pair) argp_error(state, "no pair '%s'; `hitpipe info --pipes` lists them", query->pair);
+    query->def.pair = hp_cli_pair_named(query->pair, state);
     if (!query->primary || !query->secondary) argp_error(state, "--primary and --secondary are needed");
+    if (query->def.nearest && query->def.mode != HP_MODE_CLOSEST) argp_error(state, "--nearest is for mode closest");
+    if (query->def.nearest && query->def.separation == HP_SEPARATION_OFF)
+        argp_error(state, "--nearest needs the distance of a miss: not --separation off");
 }
 
 static error_t parse(int key, char *argument, struct argp_state *state) {
@@ -59,6 +77,12 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
     case KEY_TRANSFORM:
         set_transform(query, argument, state);
         return 0;
+    case KEY_NEAREST:
+        query->def.nearest = true;
+        return 0;
+    case KEY_SEPARATION:
+        set_separation(query, argument, state);
+        return 0;
     case KEY_MODE:
         query->def.mode = hp_mode_from_name(argument);
         if (!query->def.mode) argp_error(state, "--mode is closest, any, all or zip, not '%s'", argument);
@@ -76,14 +100,13 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
     }
 }
 
-static const struct argp_child children[] = {{&hp_cli_argp, 0, "Board and output:", 90}, {0}};
+static const struct argp_child children[] = {
+    {&hp_cli_argp, 0, "Board and output:", 90}, {&hp_cli_pair_argp, 0, NULL, 0}, {0}};
 static const struct argp argp = {
     .options = option_table,
     .parser = parse,
     .args_doc = "PAIR",
-    .doc = "Tests primaries against secondaries on the board.\v"
-           "Words of a line: ray: origin xyz, direction xyz; triangle: v0 xyz, v1 xyz, v2 xyz. A line may hold a "
-           "comment after #; the first line may be a header.",
+    .doc = "Tests primaries against secondaries on the board.",
     .children = children,
 };
 
@@ -114,10 +137,13 @@ static hp_status ask(const query_options *query, hp_device *device, const hp_obj
 
 static hp_status send_scene(const query_options *query, hp_device *device, const hp_objects *secondaries,
                             hp_fault *fault) {
-    hp_status status = hp_upload(device, hp_pair_secondary(query->def.pair), secondaries->words, secondaries->count);
+    hp_object object = hp_pair_secondary(query->def.pair);
+    hp_status status = hp_upload(device, object, secondaries->words, secondaries->count);
     if (status != HP_OK) return hp_cli_device_fault(device, status, query->secondary, fault);
     if (query->moved) status = hp_transform(device, query->matrix);
-    return status == HP_OK ? HP_OK : hp_cli_device_fault(device, status, "--transform", fault);
+    if (status != HP_OK) return hp_cli_device_fault(device, status, "--transform", fault);
+    const char *wrong = query->moved ? hp_transform_fault(object, query->matrix) : NULL;
+    return wrong ? hp_fault_set(fault, HP_ERROR_INPUT, "--transform: %s", wrong) : HP_OK;
 }
 
 static hp_status write_report(const query_options *query, hp_device *device, double seconds, hp_fault *fault) {
@@ -141,6 +167,7 @@ static hp_status run_on_board(query_options *query, const hp_objects *primaries,
     hp_device *device;
     hp_status status = hp_cli_open(&query->cli, &device, fault), closed;
     double start = hp_seconds();
+    if (status == HP_OK) status = hp_cli_check_resident(device, query->def.pair, fault);
     if (status == HP_OK) status = hp_file_probe(query->out, fault);
     if (status == HP_OK) status = send_scene(query, device, secondaries, fault);
     FILE *file = status == HP_OK ? hp_file_create(query->out, fault) : NULL; /* from here on older results are gone */

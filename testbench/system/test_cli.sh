@@ -9,6 +9,9 @@ begins() { # NAME LINE: that is the first line of $output
     if [ "$(printf '%s\n' "$output" | head -n 1)" = "$2" ]; then good; else bad "$1: $output"; fi
 }
 
+pairs=$(sed -nE 's/^HP_PAIR\(.*"([a-z-]+)".*/\1/p' rtl_model/include/hitpipe/pairs.def)
+check "there are thirteen pairs" test "$(echo "$pairs" | wc -l)" = 13
+
 # ---- verbs and options ----
 status 2 "no verb" "$h"
 says "no verb" 'Usage: hitpipe VERB'
@@ -43,7 +46,11 @@ status 2 "trace without scene" "$h" trace
 status 2 "trace with two scenes" "$h" trace a.obj b.obj
 status 2 "query without pair" "$h" query -p a -s b
 status 2 "query of no pair" "$h" query ray-moon -p a -s b
-says "query of no pair" "no pair 'ray-moon'"
+says "query of no pair" "no pair 'ray-moon'; there are ray-triangle, .*, sphere-obb\$"
+status 2 "nearest of mode all" "$h" query ray-triangle -p a -s b -m all --nearest
+status 2 "nearest without separation" "$h" query ray-triangle -p a -s b --nearest --separation off
+status 2 "separation that is neither" "$h" query ray-triangle -p a -s b --separation yes
+says "separation that is neither" "on or off, not 'yes'"
 status 2 "query without files" "$h" query ray-triangle
 status 2 "query of no mode" "$h" query ray-triangle -p a -s b -m some
 status 2 "a matrix too short" "$h" query ray-triangle -p a -s b -t 1,2,3
@@ -55,13 +62,24 @@ status 0 "info --json" "$h" info --json
 says "info --json" '"target": "model"'
 status 0 "info --pipes" "$h" info --pipes
 says "the paper's operators" '^ray-triangle +27 +1 +0 +12 +15 '
+for pair in $pairs; do
+    says "operators of $pair" "^$pair( +[0-9]+){12}\$"
+done
+printf '%s\n' "$output" >"$work/pipes"
+check "each pair again, with separation" test "$(grep -cE '^  with separation( +[0-9]+){12}$' "$work/pipes")" = 13
+check "it fits in 120 columns" test -z "$(grep -E '.{121}' "$work/pipes")"
+printf '{"pipes": ["ray-triangle", "sphere-obb"]}' >"$work/two.json"
+status 0 "info --pipes of two pipes" "$h" info --pipes --board "$work/two.json"
+says "which are not there" '^obb-obb .*  not resident$'
+check "the two are" test "$(printf '%s\n' "$output" | grep -c 'not resident')" = 11
 status 0 "info --report" "$h" info --report "$work/info.json"
 check "the report is there" grep -q '"to_board": [1-9]' "$work/info.json"
 status 0 "info --report -" "$h" info --report -
 begins "the report alone" '{'
 status 0 "info --pipes --json" "$h" info --pipes --json
-for key in pair multipliers dividers square_roots adders subtractors comparators ands levels clocks interval; do
-    says "pipe key" "\"$key\":"
+printf '%s\n' "$output" >"$work/pipes.json"
+for key in multipliers dividers square_roots adders subtractors comparators ands ors selects levels clocks interval; do
+    check "pipe key $key, twice a pair" test "$(grep -c "\"$key\": [0-9]" "$work/pipes.json")" = 26
 done
 status 0 "info --config" "$h" info --config --board wscg2007
 says "a knob" '^ddr\.row_beats +512 '
@@ -147,7 +165,8 @@ bad_rays() { # NAME WORDS LINE...: exit 3 with the words
     says "$bad_name" "$bad_words"
 }
 bad_rays "zero direction" 'bad\.csv:2:1: direction is zero' '1,2,3,4,5,6' '1,2,3,0,0,0'
-bad_rays "NaN" 'bad\.csv:1:1: ' 'nan,2,3,0,0,1'
+bad_rays "NaN" 'bad\.csv:1:3: a NaN' '1,nan,3,0,0,1'
+bad_rays "past binary32" 'bad\.csv:1:3: an infinity, or a number past binary32' '1,1e39,3,0,0,1'
 bad_rays "a word" 'bad\.csv:2:7: not a number' '1,2,3,4,5,6' '1,2,3,four,5,6'
 bad_rays "cut off" 'a ray has 6 numbers, here are 3' '1,2,3'
 bad_rays "empty" 'no ray in the file' ''

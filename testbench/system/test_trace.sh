@@ -99,7 +99,7 @@ check "one triangle a clock" test $(($(compute_clocks 50x60) - $(compute_clocks 
 
 # the paper's terrain, one ray: the closed form of docs/timing.md
 clocks=$(flight 292x447 1 --board ideal --json | awk '/"compute"/ {inside = 1} inside && /"min"/ {print $2 + 0; exit}')
-latency=$("$h" info --pipes --json --board ideal | awk '/"clocks":/ {print $2 + 0}')
+latency=$("$h" info --pipes --json --board ideal | awk '/"clocks":/ {print $2 + 0; exit}')
 check "one ray against the terrain: fill, issues, drain, flush" test "$clocks" = $((1 + 259572 + latency + 1))
 
 for frames in 0 -1 1000001 -18446744073709551615 2x ''; do status 2 "flight of '$frames' frames" flight 20x30 "$frames"; done

@@ -18,12 +18,16 @@ static hp_status read_text(const char *text, hp_object object, hp_objects *objec
     return status;
 }
 
-static void refused(const char *text, const char *words) {
+static void refused_as(hp_object object, const char *text, const char *words) {
     hp_objects objects;
     hp_fault fault = {0};
-    assert_int_equal(read_text(text, HP_RAY, &objects, &fault), HP_ERROR_INPUT);
+    assert_int_equal(read_text(text, object, &objects, &fault), HP_ERROR_INPUT);
     if (!strstr(fault.message, words)) fail_msg("'%s' is not in '%s'", words, fault.message);
     assert_null(objects.words);
+}
+
+static void refused(const char *text, const char *words) {
+    refused_as(HP_RAY, text, words);
 }
 
 static void lines_become_objects(void **state) {
@@ -49,9 +53,9 @@ static void broken_lines_are_refused_with_their_place(void **state) {
     refused("1,2,,4,5,6\n", "f.csv:1:5: not a number");
     refused("1 2 3 4 5 6\n", "expected a comma after number 1");
     refused("\n1,2,3,0,-0,0\n", "f.csv:2:1: direction is zero");
-    refused("1,2,nan,4,5,6\n", "f.csv:1:1: ");
-    refused("1,2,1e39,4,5,6\n", "f.csv:1:1: ");
-    refused("1,2,3,4,5,6\n1,2,3,4,inf,6\n", "f.csv:2:1: ");
+    refused("1,2, nan,4,5,6\n", "f.csv:1:6: a NaN");
+    refused("1,2,1e39,4,5,6\n", "f.csv:1:5: an infinity, or a number past binary32");
+    refused("1,2,3,4,5,6\n1,2,3,4,-inf,6\n", "f.csv:2:9: an infinity");
     refused("1.5.2,2,3,4,5,6\n", "f.csv:1:1: not a number");
     refused("1,2,3x,4,5,6\n", "f.csv:1:5: not a number");
 }
@@ -77,6 +81,57 @@ static void a_byte_order_mark_is_no_header(void **state) {
     assert_true(objects.words[0] == 1);
     hp_objects_free(&objects);
     refused("\xEF\xBB\xBFone,2,3,4,5,6\n", "f.csv:1:1: not a number");
+}
+
+static const struct {
+    hp_object object;
+    const char *name, *line; /* one that is taken */
+} lines[] = {
+    {HP_RAY, "ray", "1,2,3,0,0,-1"},
+    {HP_TRIANGLE, "triangle", "0,0,0,1,0,0,0,1,0"},
+    {HP_SPHERE, "sphere", "1,2,3,0"},
+    {HP_AABB, "aabb", "-1,-2,-3,-1,2,3"},
+    {HP_OBB, "obb", "1,2,3,0,1,2,0.6,0.8,0,-0.8,0.6,0,0,0,1"},
+    {HP_CYLINDER, "cylinder", "0,0,0,0,0,1e-3,0"},
+    {HP_PLANE, "plane", "0,0.6,-0.8,7"},
+};
+
+static void every_type_is_read_by_its_number_of_words(void **state) {
+    (void)state;
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        char text[512], words[128];
+        snprintf(text, sizeof text, "# %s\n%s\n%s # twice\n", lines[i].name, lines[i].line, lines[i].line);
+        hp_objects objects;
+        hp_fault fault;
+        unsigned n = hp_object_words(lines[i].object);
+        if (read_text(text, lines[i].object, &objects, &fault) != HP_OK) fail_msg("%s", fault.message);
+        assert_int_equal(objects.count, 2);
+        assert_memory_equal(objects.words, objects.words + n, n * sizeof(float));
+        hp_objects_free(&objects);
+        snprintf(text, sizeof text, "%s\n%s,4", lines[i].line, lines[i].line);
+        snprintf(words, sizeof words, "f.csv:2:%zu: a%s %s has %u numbers, here are more", strlen(lines[i].line) + 1,
+                 strchr("ao", lines[i].name[0]) ? "n" : "", lines[i].name, n);
+        refused_as(lines[i].object, text, words);
+        snprintf(text, sizeof text, "%s", lines[i].line);
+        *strrchr(text, ',') = 0;
+        snprintf(words, sizeof words, "%s has %u numbers, here are %u", lines[i].name, n, n - 1);
+        refused_as(lines[i].object, text, words);
+    }
+}
+
+static void what_a_type_forbids_is_refused_with_its_cause(void **state) {
+    (void)state;
+    refused_as(HP_SPHERE, "1,2,3,4\n1,2,3,-1e-30\n", "f.csv:2:1: radius is negative");
+    refused_as(HP_AABB, "0,0,0,1,1,1\n\n0,0,1,1,1,0.999\n", "f.csv:3:1: min is greater than max");
+    refused_as(HP_CYLINDER, "1,2,3,1,2,3,1\n", "f.csv:1:1: p0 and p1 are the same point");
+    refused_as(HP_CYLINDER, "1,2,3,1,2,4,-1\n", "f.csv:1:1: radius is negative");
+    refused_as(HP_OBB, "0,0,0,1,-1,1,1,0,0,0,1,0,0,0,1\n", "f.csv:1:1: half extent is negative");
+    refused_as(HP_OBB, "0,0,0,1,1,1,1,0,0,0,1,0,0,0,0\n", "f.csv:1:1: axes are not orthonormal: w.w is 0");
+    refused_as(HP_OBB, "0,0,0,1,1,1,0.707,0.707,0,-0.707,0.707,0,0,0,1\n",
+               "axes are not orthonormal: u.u is 0.999698");
+    refused_as(HP_OBB, "0,0,0,1,1,1,1,0,0,0,1,0,0.6,0,0.8\n", "axes are not orthonormal: u.w is 0.6");
+    refused_as(HP_PLANE, "0,0,2,1\n", "f.csv:1:1: normal is not of length 1: n.n is 4");
+    refused_as(HP_PLANE, "0,0,0,1\n", "f.csv:1:1: normal is zero");
 }
 
 static void results_read_back_to_the_same_bits(void **state) {
@@ -110,6 +165,8 @@ int main(void) {
         cmocka_unit_test(broken_lines_are_refused_with_their_place),
         cmocka_unit_test(a_broken_first_line_is_no_header),
         cmocka_unit_test(a_byte_order_mark_is_no_header),
+        cmocka_unit_test(every_type_is_read_by_its_number_of_words),
+        cmocka_unit_test(what_a_type_forbids_is_refused_with_its_cause),
         cmocka_unit_test(results_read_back_to_the_same_bits),
     };
     return cmocka_run_group_tests_name("csv", tests, NULL, NULL);
