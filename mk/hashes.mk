@@ -2,7 +2,7 @@
 # Each build prints "passed" or "failed" lines for testbench/tools/hashes.sh to add up.
 HASH_PIPES := $(BUILD)/hash_pipes
 
-$(HASH_PIPES): $(BUILD)/testbench/tools/hash_pipes.o $(BUILD)/testbench/support/hash.o $(LIB)
+$(HASH_PIPES): $(BUILD)/testbench/tools/hash_pipes.o $(BUILD)/testbench/support/hash.o $(BUILD)/testbench/support/plain_objects.o $(LIB)
 	$(call say,LD)
 	$(run)$(CC) $(LDSAN) $^ -o $@ $(LIBS_LIB)
 

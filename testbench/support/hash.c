@@ -1,7 +1,7 @@
 /* Hashing the results of a pipe. */
 #include "testbench/support/hash.h"
 #include "rtl_model/pipes/wide.h"
-#include "testbench/support/random.h"
+#include "testbench/support/plain_objects.h"
 #include <hitpipe/pipe.h>
 #include <math.h>
 #include <string.h>
@@ -15,21 +15,6 @@ typedef struct chunk {
     float T[CHUNK], CP[3][CHUNK];
 } chunk;
 
-/* Evenly in [-size, size) from one of the three 21-bit parts of 64 random bits. */
-static float part(uint64_t random, unsigned which, float size) {
-    return ((float)(random >> (21 * which) & 0x1FFFFF) * 0x1p-20f - 1) * size;
-}
-
-static void draw_point(hpt_random *random, float size, float *point) {
-    uint64_t r = hpt_random_bits(random);
-    for (unsigned axis = 0; axis < 3; axis++) point[axis] = part(r, axis, size);
-}
-
-static void draw_whole_point(hpt_random *random, float *point) {
-    uint64_t r = hpt_random_bits(random);
-    for (unsigned axis = 0; axis < 3; axis++) point[axis] = (float)((r >> (20 * axis)) % 7) - 3;
-}
-
 /* ---- ray-triangle ---- */
 
 /* Aims the ray at v0 + b1 e1 + b2 e2. */
@@ -42,16 +27,16 @@ static void aim(float b1, float b2, float ray[6], const float triangle[9]) {
 
 /* Somewhere near or on the triangle. */
 static void near(hpt_random *random, float ray[6], float triangle[9]) {
-    for (unsigned vertex = 0; vertex < 3; vertex++) draw_point(random, 1, triangle + 3 * vertex);
-    draw_point(random, 2, ray);
+    for (unsigned vertex = 0; vertex < 3; vertex++) hpt_draw_point(random, 1, triangle + 3 * vertex);
+    hpt_draw_point(random, 2, ray);
     uint64_t r = hpt_random_bits(random);
-    aim(0.4f + part(r, 0, 0.7f), 0.4f + part(r, 1, 0.7f), ray, triangle);
+    aim(0.4f + hpt_part(r, 0, 0.7f), 0.4f + hpt_part(r, 1, 0.7f), ray, triangle);
 }
 
 /* Through an edge or a vertex, in whole numbers. */
 static void edge(hpt_random *random, float ray[6], float triangle[9]) {
-    for (unsigned vertex = 0; vertex < 3; vertex++) draw_whole_point(random, triangle + 3 * vertex);
-    draw_whole_point(random, ray);
+    for (unsigned vertex = 0; vertex < 3; vertex++) hpt_draw_whole_point(random, triangle + 3 * vertex);
+    hpt_draw_whole_point(random, ray);
     uint64_t r = hpt_random_bits(random);
     float along = (float)(r % 3) / 2;
     unsigned side = (unsigned)(r >> 32) % 3;
@@ -83,56 +68,6 @@ static void (*const kinds[])(hpt_random *random, float ray[6], float triangle[9]
 
 /* ---- objects of any type ---- */
 
-/* A frame from a quaternion of small whole numbers: its words are rounded once. `square`: along the axes. */
-static void draw_axes(hpt_random *random, bool square, float axes[9]) {
-    uint64_t r = hpt_random_bits(random);
-    double q[4];
-    for (unsigned i = 0; i < 4; i++) q[i] = (double)(r >> 10 * i & 1023) - 512;
-    if (square) q[0] = 1, q[1] = (double)(r & 1), q[2] = q[3] = 0;
-    double a = q[0], b = q[1], c = q[2], d = q[3], n = a * a + b * b + c * c + d * d;
-    if (n == 0) a = n = 1;
-    const double rows[9] = {
-        a * a + b * b - c * c - d * d, 2 * (b * c - a * d),           2 * (b * d + a * c),
-        2 * (b * c + a * d),           a * a - b * b + c * c - d * d, 2 * (c * d - a * b),
-        2 * (b * d - a * c),           2 * (c * d + a * b),           a * a - b * b - c * c + d * d};
-    for (unsigned i = 0; i < 9; i++) axes[i] = (float)(rows[i] / n);
-}
-
-static void draw_place(hpt_random *random, bool whole, float *point) {
-    if (whole)
-        draw_whole_point(random, point);
-    else
-        draw_point(random, 1, point);
-}
-
-/* 0 to 1; whole: 0, 1 or 2. */
-static float draw_size(hpt_random *random, bool whole) {
-    uint64_t r = hpt_random_bits(random);
-    return whole ? (float)(r % 3) : (part(r, 0, 1) + 1) / 2;
-}
-
-static void draw_object(hpt_random *random, hp_object type, bool whole, float *words) {
-    float axes[9];
-    unsigned points = type == HP_TRIANGLE ? 3 : type == HP_RAY || type == HP_AABB || type == HP_CYLINDER ? 2 : 1;
-    for (unsigned i = 0; i < points; i++) draw_place(random, whole, words + 3 * i);
-    if (type == HP_SPHERE) words[3] = draw_size(random, whole);
-    if (type == HP_CYLINDER) words[6] = draw_size(random, whole) / 2;
-    for (unsigned i = 0; i < 3 && type == HP_AABB; i++) words[3 + i] = words[i] + draw_size(random, whole);
-    for (unsigned i = 0; i < 3 && type == HP_OBB; i++) words[3 + i] = draw_size(random, whole);
-    if (type == HP_OBB) draw_axes(random, whole, words + 6);
-    if (type != HP_PLANE) return;
-    words[3] = words[0];
-    draw_axes(random, whole, axes);
-    memcpy(words, axes, 3 * sizeof(float));
-}
-
-/* Whether word w of an object is a length, not a part of a direction. */
-static bool is_length(hp_object type, unsigned w) {
-    if (type == HP_RAY) return w < 3;
-    if (type == HP_OBB) return w < 6;
-    return type == HP_PLANE ? w == 3 : true;
-}
-
 static void draw_bits(hpt_random *random, unsigned n, float *words) {
     for (unsigned w = 0; w < n; w++) {
         uint32_t r = (uint32_t)(hpt_random_bits(random) >> 32);
@@ -150,9 +85,9 @@ static void draw_any(hpt_random *random, uint64_t i, hp_pair pair, float *primar
         if (i % 8 == 7)
             draw_bits(random, n, words[k]);
         else
-            draw_object(random, types[k], i & 1, words[k]);
+            hpt_draw_plain_object(random, types[k], i & 1, words[k]);
         for (unsigned w = 0; w < n && i % 4 == 2; w++)
-            if (is_length(types[k], w)) words[k][w] *= size;
+            if (hpt_is_length(types[k], w)) words[k][w] *= size;
     }
 }
 
