@@ -2,3 +2,4 @@
  * system, before the pipes. */
 
 #include "rtl_model/pipes/parts/cylinder.part.h"
+#include "rtl_model/pipes/parts/rim.part.h"

@@ -60,8 +60,8 @@ HP_INLINE vec3 HP_NAMED(move_out)(HP_NAMED(cylinder) c, vec3 p) {
     return add3(c.origin, add3(across, scale3(add(p.z, c.h), c.a)));
 }
 
-/* The nearest point of an ellipse, semi-axes r and k r, seen from the point x, y inside it or near it: a step towards
- * the cotangent of its eccentric angle, that is of its point (r cos t, k r sin t), whose normal is (k cos t, sin t).
+/* The nearest normal of an ellipse with semi-axes r and k r to a point (x, y) inside it or near it: the cotangent of
+ * the eccentric angle t of the nearest point (r cos t, k r sin t), whose normal is (k cos t, sin t).
  *
  * The normal through that point meets (x, y) when X/cos t - Y/sin t = R, with X = x, Y = k y, R = (1 - k^2) r: one
  * equation in two numbers, whatever the ellipse. With rho = cot t, p = (1 + rho^2)^(3/2) it says
@@ -74,4 +74,25 @@ HP_INLINE num HP_NAMED(ellipse_step)(num rho, num X, num Y, num R) {
     num rho2 = mul(rho, rho), w = add(constant(1), rho2);
     num p = mul(w, sqrt(w));
     return div(sub(mul(X, p), mul(R, mul(rho2, rho))), add(R, mul(Y, p)));
+}
+
+/* Steps are slow near the cusp of the evolute (X = R, Y = 0), where three normals meet. So begin at the last of a
+ * few stations left of the root, which is where the left side is positive and falls. Then three steps leave at most
+ * 2e-6 r of the distance, measured over ellipses from k = 1e-4 to 1 - 1e-4 and points close to the cusp and to the
+ * rim. Where there is no root, it is any number. */
+HP_INLINE num HP_NAMED(ellipse_normal)(num X, num Y, num R) {
+    /* rho, rho / sqrt(1 + rho^2), minus the derivative of that */
+    static const float station[7][3] = {
+        {0.5f, 0.447213595f, -0.715541753f},   {1.2f, 0.76822128f, -0.262370656f},
+        {2.2f, 0.910366477f, -0.0708566685f},  {4.0f, 0.9701425f, -0.0142668015f},
+        {8.0f, 0.992277877f, -0.00190822669f}, {16.0f, 0.998052578f, -0.000242717067f},
+        {40.0f, 0.999687646f, -1.5610363e-05f}};
+    num rho = constant(0);
+    for (unsigned i = 0; i < 7; i++) {
+        num reach = add(mul(Y, constant(station[i][0])), mul(R, constant(station[i][1])));
+        flag left = and(at_least(X, reach), less(mul(R, constant(station[i][2])), Y));
+        rho = select(left, constant(station[i][0]), rho);
+    }
+    for (unsigned i = 0; i < 3; i++) rho = HP_NAMED(ellipse_step)(rho, X, Y, R);
+    return rho;
 }
