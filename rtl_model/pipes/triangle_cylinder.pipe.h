@@ -58,7 +58,7 @@ HP_INLINE HP_NAMED(common)
     num part = div(dot(v[0], n), dot(end, n));
     vec3 p = scale3(clamp(part, constant(-1), constant(1)), end);
     num inside = constant(INFINITY);
-    REPEAT(i, 3) inside = min(inside, dot(cross(t[i].e, sub3(p, v[i])), n));
+    REPEAT(i, 3) inside = min(dot(cross(t[i].e, sub3(p, v[i])), n), inside);
     return (HP_NAMED(common)){p, neg(div(inside, length(n)))};
 }
 

@@ -40,9 +40,8 @@ HP_INLINE num HP_NAMED(rim_depth)(HP_NAMED(turning) t, num h, num r, num a, num 
 
 /* A point of the edge p + t e, t from 0 to 1, as deep in the cylinder as the middle of what the cylinder's side and
  * caps leave of it, and how far it is outside (negative: inside). Where they leave nothing, for the edge passes by
- * or roundings say so, it is near to where it passes. A number that is none, for an edge parallel to the axis or to
- * the caps, bounds nothing: it stands second in max and first in min. u: distance of the edge's line from the axis.
- */
+ * or roundings say so, it is near to where it passes. A number that is none, for an edge parallel to the axis, bounds
+ * nothing: it stands second in max and first in min. u: distance of the edge's line from the axis. */
 typedef struct HP_NAMED(common) {
     vec3 p;
     num outside;
@@ -57,9 +56,9 @@ HP_INLINE HP_NAMED(common) HP_NAMED(edge_in_cylinder)(vec3 p, vec3 e, num u, num
     num middle = div(neg(add(mul(p.x, e.x), mul(p.y, e.y))), across), near = abs(u);
     num half = sqrt(div(max(mul(sub(r, near), add(r, near)), zero), across));
     num floor = div(sub(neg(h), p.z), e.z), roof = div(sub(h, p.z), e.z);
-    flag up = less(zero, e.z);
-    num low = max(max(zero, sub(middle, half)), select(up, floor, roof));
-    num high = min(select(up, roof, floor), min(add(middle, half), one));
+    flag slants = less(zero, abs(e.z));
+    num low = max(max(zero, sub(middle, half)), select(slants, min(floor, roof), zero));
+    num high = min(select(slants, max(floor, roof), one), min(add(middle, half), one));
     num t = mul(constant(0.5f), add(min(low, one), max(high, zero)));
     vec3 at = add3(p, scale3(t, e));
     return (HP_NAMED(common)){at, HP_NAMED(outside_cylinder)(at, h, r)};
