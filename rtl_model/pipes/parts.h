@@ -3,3 +3,6 @@
 
 #include "rtl_model/pipes/parts/cylinder.part.h"
 #include "rtl_model/pipes/parts/rim.part.h"
+#include "rtl_model/pipes/parts/legal.part.h"
+#include "rtl_model/pipes/parts/ray.part.h"
+#include "rtl_model/pipes/parts/triangle.part.h"
