@@ -2,9 +2,11 @@
 
 #include <math.h>
 
-/* A NaN is as wrong as can be. */
+/* A NaN is as wrong as can be. Two points in the origin have no scale: there is no error to be had but an infinite
+ * one.
+ */
 static double error_of(double given, double exact, double scale) {
-    double error = fabs(given - exact) / scale;
+    double error = given == exact ? 0 : fabs(given - exact) / scale;
     return error >= 0 ? error : INFINITY;
 }
 
@@ -31,9 +33,9 @@ static void measure_depth(hpt_verdict *verdict, hp_pair pair, const float *prima
     verdict->T_error = error_of(given->T, -truth->signed_distance, scale);
     verdict->CP_error = INFINITY;
     if (!is_finite(given->CP)) return;
-    verdict->CP_error = fmax(hpt_distance_to(hp_pair_primary(pair), primary, given->CP),
-                             hpt_distance_to(hp_pair_secondary(pair), secondary, given->CP)) /
-                        scale;
+    double off = fmax(hpt_distance_to(hp_pair_primary(pair), primary, given->CP),
+                      hpt_distance_to(hp_pair_secondary(pair), secondary, given->CP));
+    verdict->CP_error = error_of(off, 0, scale);
 }
 
 hpt_verdict hpt_judge(hp_pair pair, const float *primary, const float *secondary, const hpt_truth *truth,
