@@ -116,8 +116,9 @@ HP_INLINE num HP_NAMED(square_ab)(num squares[3][3], unsigned i, unsigned j) {
  * eliminating x0 and x1 leads to are the separating axes again, which also says which of them are idle. Of each
  * interval the middle is taken.
  *
- * Both boxes are taken a little larger, by 2^-21 of their extents, so that what rounding does cannot close an
- * interval of boxes that touch; and a coefficient that is almost zero is taken as 2^-40. */
+ * Both boxes are taken a little larger, by 2^-22 of their extents, so that what rounding does cannot close an
+ * interval of boxes that touch. A coefficient that is almost zero is taken as 2^-60, and in the inequalities of
+ * parallel edges, 0 x <= 0, the right side is that much larger. */
 
 typedef struct HP_NAMED(interval) {
     num low, high;
@@ -136,7 +137,7 @@ HP_INLINE num HP_NAMED(middle)(HP_NAMED(interval) x, num limit) {
 
 /* 1 / r; almost parallel is not parallel. */
 HP_INLINE void HP_NAMED(obb_obb_inverse)(num r[3][3], num m[3][3], num inverse[3][3]) {
-    num least = constant(0x1p-40f);
+    num least = constant(0x1p-60f);
     for (unsigned i = 0; i < 3; i++)
         for (unsigned j = 0; j < 3; j++)
             inverse[i][j] = div(constant(1), select(less(m[i][j], least), least, r[i][j]));
@@ -145,7 +146,7 @@ HP_INLINE void HP_NAMED(obb_obb_inverse)(num r[3][3], num m[3][3], num inverse[3
 HP_INLINE vec3 HP_NAMED(obb_obb_common)(const HP_NAMED(two_boxes) * p, num inverse[3][3]) {
     num a[3], b[3], row[3], room[3], cross_room[3][2], extents = constant(0);
     for (unsigned i = 0; i < 3; i++) extents = i ? add(extents, add(p->a[i], p->b[i])) : add(p->a[i], p->b[i]);
-    num slack = mul(constant(0x1p-21f), extents);
+    num slack = mul(constant(0x1p-22f), extents), parallel = mul(constant(0x1p-45f), extents);
     for (unsigned i = 0; i < 3; i++) {
         a[i] = add(p->a[i], slack);
         b[i] = add(p->b[i], slack);
@@ -154,7 +155,8 @@ HP_INLINE vec3 HP_NAMED(obb_obb_common)(const HP_NAMED(two_boxes) * p, num inver
     for (unsigned i = 0; i < 3; i++) {
         unsigned k = HP_NEXT(i), l = HP_LAST(i);
         room[i] = add(add(a[i], a[i]), mul(b[0], p->m[i][0]));
-        for (unsigned j = 0; j < 2; j++) cross_room[i][j] = add(mul(a[k], p->m[l][j]), mul(a[l], p->m[k][j]));
+        for (unsigned j = 0; j < 2; j++)
+            cross_room[i][j] = add(add(mul(a[k], p->m[l][j]), mul(a[l], p->m[k][j])), parallel);
     }
 
     HP_NAMED(interval) x2 = {neg(b[2]), b[2]}, x1 = {neg(b[1]), b[1]}, x0 = {neg(b[0]), b[0]};
@@ -167,17 +169,17 @@ HP_INLINE vec3 HP_NAMED(obb_obb_common)(const HP_NAMED(two_boxes) * p, num inver
         HP_NAMED(narrow)
         (&x2, inverse[i][0], HP_NAMED(along_b)(p, i, 1), add(cross_room[i][1], mul(b[0], p->m[i][2])));
     }
-    num z = HP_NAMED(middle)(x2, p->b[2]);
+    num z = HP_NAMED(middle)(x2, b[2]);
     for (unsigned i = 0; i < 3; i++) {
         row[i] = add(row[i], mul(p->r[i][2], z));
         HP_NAMED(narrow)(&x1, inverse[i][1], row[i], room[i]);
         HP_NAMED(narrow)
         (&x1, inverse[i][2], sub(HP_NAMED(along_b)(p, i, 0), mul(p->r[i][1], z)), cross_room[i][0]);
     }
-    num y = HP_NAMED(middle)(x1, p->b[1]);
+    num y = HP_NAMED(middle)(x1, b[1]);
     for (unsigned i = 0; i < 3; i++)
         HP_NAMED(narrow)(&x0, inverse[i][0], add(row[i], mul(p->r[i][1], y)), add(a[i], a[i]));
-    return (vec3){HP_NAMED(middle)(x0, p->b[0]), y, z};
+    return (vec3){HP_NAMED(middle)(x0, b[0]), y, z};
 }
 
 /* ---- the distance of two boxes ----
@@ -255,7 +257,7 @@ HP_INLINE num HP_NAMED(obb_obb_distance)(const HP_NAMED(two_boxes) * p, num inve
         for (unsigned j = 0; j < 3; j++) {
             e.r[i][j] = i == j ? p->r[i][j] : select(swaps, p->r[j][i], p->r[i][j]);
             e.inverse[i][j] = i == j ? inverse[i][j] : select(swaps, inverse[j][i], inverse[i][j]);
-            num guarded = max(abs(e.r[i][j]), constant(0x1p-40f));
+            num guarded = max(abs(e.r[i][j]), constant(0x1p-60f));
             e.weight[i][j] = mul(guarded, guarded);
         }
     }
@@ -301,7 +303,8 @@ HP_INLINE HP_NAMED(two_boxes) HP_NAMED(obb_obb_pair)(const num primary[15], cons
 
 HP_INLINE answer HP_NAMED(obb_obb_test)(const num primary[15], const num prepared[18], bits index, bool separation) {
     HP_NAMED(two_boxes) p = HP_NAMED(obb_obb_pair)(primary, prepared);
-    num zero = constant(0), infinity = constant(INFINITY), squares[3][3], overlap[3][3];
+    num zero = constant(0), infinity = constant(INFINITY), squares[3][3], overlap[3][3], length2[3][3];
+    flag parallel[3][3];
 
     num first_a = HP_NAMED(overlap_a)(&p, 0), first_b = HP_NAMED(overlap_b)(&p, 0);
     flag whole = less(add(first_a, first_b), infinity);
@@ -314,21 +317,22 @@ HP_INLINE answer HP_NAMED(obb_obb_test)(const num primary[15], const num prepare
     }
     UNLESS_ANY(F) if (!separation) return miss();
 
+    num edges = infinity;
+    for (unsigned i = 0; i < 3; i++)
+        for (unsigned j = 0; j < 3; j++) squares[i][j] = mul(p.r[i][j], p.r[i][j]);
     for (unsigned i = 0; i < 3; i++)
         for (unsigned j = 0; j < 3; j++) {
             overlap[i][j] = HP_NAMED(overlap_ab)(&p, i, j);
-            F = and(F, at_least(overlap[i][j], zero));
+            length2[i][j] = HP_NAMED(square_ab)(squares, i, j);
+            parallel[i][j] = less(length2[i][j], constant(0x1p-46f));
+            F = and(F, or (parallel[i][j], at_least(overlap[i][j], zero)));
         }
     UNLESS_ANY(F) if (!separation) return miss();
 
     for (unsigned i = 0; i < 3; i++)
-        for (unsigned j = 0; j < 3; j++) squares[i][j] = mul(p.r[i][j], p.r[i][j]);
-    num edges = infinity;
-    for (unsigned i = 0; i < 3; i++)
         for (unsigned j = 0; j < 3; j++) {
-            num length2 = HP_NAMED(square_ab)(squares, i, j);
-            num overlap2 = div(mul(overlap[i][j], overlap[i][j]), length2);
-            edges = min(select(less(constant(0x1p-80f), length2), overlap2, infinity), edges);
+            num overlap2 = div(mul(overlap[i][j], overlap[i][j]), length2[i][j]);
+            edges = min(select(parallel[i][j], infinity, overlap2), edges);
         }
     num T = min(faces, sqrt(edges));
 
