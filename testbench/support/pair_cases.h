@@ -11,7 +11,8 @@
 #include <hitpipe/types.h>
 
 typedef enum hpt_class {
-    HPT_RANDOM,     /* sizes 0.2 to 1 near the origin; about half collide, some deep, some one inside the other */
+    HPT_RANDOM,     /* sizes 0.2 to 1 near the origin; half to three quarters collide, some deep, some one inside the
+                       other */
     HPT_GRAZING,    /* random, then the primary moved until the sets are 2^-4 to 2^10 bands from touching */
     HPT_DEGENERATE, /* slivers, rods and plates of aspect 1e3 to 1e5, flat and zero extents, parallel and nearly
                        parallel axes and faces, faces that coincide, sizes 1e-3 to 1e4 mixed */

@@ -1,20 +1,14 @@
-/* How far the pipes are from the truth: the table of docs/accuracy.md, or the worst pairs one by one.
+/* How far the pipes are from the truth: the tables of docs/accuracy.md, or the worst pairs one by one.
  *
  *   accuracy [--count N] [--pair NAME] [--class CLASS] [--worst N] [--no-quad]
  */
 #include <errno.h>
-#include <hitpipe/pipe.h>
 #include <math.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "rtl_model/pipes/quad.h"
-#include "testbench/reference/judge.h"
-#include "testbench/support/pair_cases.h"
-
-enum { SEED = 3, BATCH = 100, THREADS = 2 };
+#include "testbench/support/accuracy.h"
 
 static const char usage[] =
     "usage: accuracy [--count N] [--pair NAME] [--class CLASS] [--worst N] [--no-quad]\n"
@@ -31,145 +25,14 @@ typedef struct options {
     bool quad;
 } options;
 
-/* One pair and what was made of it. */
-typedef struct record {
-    float primary[HP_OBJECT_WORDS_MAX], secondary[HP_OBJECT_WORDS_MAX];
-    hp_result result;
-    hpt_truth truth;
-    hpt_verdict verdict, in_quad;
-} record;
-
-/* ---- measuring ---- */
-
-typedef struct job {
-    hp_pair pair;
-    hpt_class class;
-    unsigned count, next;
-    bool quad;
-    record *records;
-    pthread_mutex_t lock;
-} job;
-
-static void measure(const job *j, record *r) {
-    r->truth = hpt_truth_of(j->pair, r->primary, r->secondary);
-    r->result = hp_pipe_test(j->pair, HP_GRADUAL, true, r->primary, r->secondary, 0);
-    const float *CP = r->result.CP;
-    hpt_given given = {r->result.F != 0, r->result.T, {CP[0], CP[1], CP[2]}};
-    r->verdict = hpt_judge(j->pair, r->primary, r->secondary, &r->truth, true, &given);
-    if (!j->quad) return;
-    hp_quad_result q = hp_quad_pipe_test(j->pair, true, r->primary, r->secondary);
-    given = (hpt_given){q.F, (double)q.T, {(double)q.CP[0], (double)q.CP[1], (double)q.CP[2]}};
-    r->in_quad = hpt_judge(j->pair, r->primary, r->secondary, &r->truth, true, &given);
-}
-
-/* Each batch has a sequence of its own, so that the pairs do not depend on threads or on the count. */
-static void *work(void *argument) {
-    job *j = argument;
-    for (;;) {
-        pthread_mutex_lock(&j->lock);
-        unsigned first = j->next;
-        j->next += BATCH;
-        pthread_mutex_unlock(&j->lock);
-        if (first >= j->count) return NULL;
-        hpt_random random = hpt_random_seed(((uint64_t)j->pair << 40) + ((uint64_t)j->class << 32) + first + SEED);
-        for (unsigned i = first; i < first + BATCH && i < j->count; i++) {
-            hpt_draw_pair(&random, j->pair, j->class, i, j->records[i].primary, j->records[i].secondary);
-            measure(j, &j->records[i]);
-        }
-    }
-}
-
-static void measure_all(job *j) {
-    pthread_t thread[THREADS];
-    j->next = 0;
-    pthread_mutex_init(&j->lock, NULL);
-    for (int i = 0; i < THREADS; i++)
-        if (pthread_create(&thread[i], NULL, work, j) != 0) abort();
-    for (int i = 0; i < THREADS; i++) pthread_join(thread[i], NULL);
-    pthread_mutex_destroy(&j->lock);
-}
-
-/* ---- the errors of a row ---- */
-
-typedef enum figure { OF_T, OF_SEPARATION, OF_CP, FIGURES } figure;
-
-static const char *const figure_names[FIGURES] = {"T", "separation", "CP"};
-
-/* The error, or -1 where there is none to be had. */
-static double error_in(const hpt_verdict *v, figure which) {
-    if (which == OF_SEPARATION) return v->separated ? v->separation_error : -1;
-    return !v->measured ? -1 : which == OF_T ? v->T_error : v->CP_error;
-}
-
-static int ascending(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-typedef struct spread {
-    unsigned n;
-    double median, high, worst; /* high: 99.9 % are no greater */
-} spread;
-
-static spread spread_of(const job *j, figure which, bool quad) {
-    double *error = malloc(j->count * sizeof *error);
-    spread s = {0};
-    if (!error) abort();
-    for (unsigned i = 0; i < j->count; i++) {
-        double e = error_in(quad ? &j->records[i].in_quad : &j->records[i].verdict, which);
-        if (e >= 0) error[s.n++] = e;
-    }
-    qsort(error, s.n, sizeof *error, ascending);
-    if (s.n) {
-        s.median = error[s.n / 2];
-        s.high = error[(unsigned)ceil(0.999 * s.n) - 1];
-        s.worst = error[s.n - 1];
-    }
-    free(error);
-    return s;
-}
-
-typedef struct flags {
-    unsigned hits, within, outside, open; /* wrong inside and outside the band; certificates that did not close */
-    double worst;                         /* wrong flag, in bands */
-} flags;
-
-static flags flags_of(const job *j, bool quad) {
-    flags f = {0};
-    for (unsigned i = 0; i < j->count; i++) {
-        const hpt_verdict *v = quad ? &j->records[i].in_quad : &j->records[i].verdict;
-        f.hits += j->records[i].truth.F;
-        f.within += !v->right && v->within;
-        f.outside += !v->right && !v->within;
-        f.open += !j->records[i].truth.certified;
-        f.worst = fmax(f.worst, v->margin);
-    }
-    return f;
-}
-
-/* ---- the table ---- */
-
-/* What issue and design ask of a class: flags wrong outside the band, T and CP at 99.9 % and at worst. */
-static const struct {
-    unsigned wrong_in_10000;
-    double high, worst;
-} bounds[HPT_CLASSES] = {
-    [HPT_RANDOM] = {0, 1e-6, 1e-5},
-    [HPT_GRAZING] = {0, 1e-5, 1e-4},
-    [HPT_DEGENERATE] = {1, 1e-5, 1e-4},
-    [HPT_OFFSET] = {0, 1e-6, 1e-5},
+static const hp_pair pairs[] = {
+#define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, prepared) HP_PAIR_##NAME,
+#include <hitpipe/pairs.def>
+#undef HP_PAIR
 };
+enum { PAIRS = sizeof pairs / sizeof *pairs };
 
-static void head(bool quad) {
-    printf("| pair | class | pairs | hits | in band | wrong | worst, bands | T median | T 99.9 %% | T worst | "
-           "separation median | separation 99.9 %% | separation worst | CP 99.9 %% | CP worst |");
-    if (quad)
-        printf(" wrong, binary128 | T 99.9 %%, binary128 | T worst, binary128 | separation worst, binary128 | "
-               "CP worst, binary128 |");
-    printf(" open | above its bound |\n|---|---|");
-    for (int i = 0; i < 14 + (quad ? 5 : 0); i++) printf("--:|");
-    printf("---|\n");
-}
+/* ---- the tables ---- */
 
 static void number(bool any, double x) {
     if (any)
@@ -178,46 +41,54 @@ static void number(bool any, double x) {
         printf(" |");
 }
 
-/* Names what is above its bound. */
-static unsigned print_over(const job *j, const flags *f, const spread of[FIGURES]) {
-    unsigned over = 0;
-    printf(" %u |", f->open);
-    if ((uint64_t)f->outside * 10000 >
-        (uint64_t)bounds[j->class].wrong_in_10000 * (j->count < 10000 ? 10000 : j->count))
-        printf("%s**F**", over++ ? ", " : " ");
-    for (int i = 0; i < FIGURES; i++)
-        if (of[i].high > bounds[j->class].high || of[i].worst > bounds[j->class].worst)
-            printf("%s**%s**", over++ ? ", " : " ", figure_names[i]);
-    printf(" |\n");
-    return over;
+static void print_head(void) {
+    printf("| pair | class | pairs | hits | in band | wrong | worst, bands | T median | T 99.9 %% | T worst | "
+           "separation median | separation 99.9 %% | separation worst | CP 99.9 %% | CP worst | open | above its "
+           "bound |\n"
+           "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|\n");
 }
 
-static unsigned print_row(const job *j) {
-    flags f = flags_of(j, false), fq = flags_of(j, true);
-    spread of[FIGURES], in_quad[FIGURES];
-    for (int i = 0; i < FIGURES; i++) {
-        of[i] = spread_of(j, i, false);
-        in_quad[i] = spread_of(j, i, true);
-    }
-    printf("| %s | %s | %u | %u | %u | %u |", hp_pair_name(j->pair), hpt_class_name(j->class), j->count, f.hits,
-           f.within, f.outside);
-    if (f.worst > 0)
-        printf(" %.2g |", f.worst);
+static void print_row(const hpt_row *row) {
+    static const char *const names[] = {"F", "T", "separation", "CP"};
+    const hpt_flags *f = &row->flags[0];
+    printf("| %s | %s | %u | %u | %u | %u |", hp_pair_name(row->pair), hpt_class_name(row->class), row->count,
+           f->hits, f->within, f->outside);
+    if (f->worst > 0)
+        printf(" %.2g |", f->worst);
     else
         printf(" |");
-    for (int i = 0; i < FIGURES; i++) {
-        if (i != OF_CP) number(of[i].n, of[i].median);
-        number(of[i].n, of[i].high);
-        number(of[i].n, of[i].worst);
+    for (int i = 0; i < HPT_FIGURES; i++) {
+        const hpt_spread *s = &row->spread[0][i];
+        if (i != HPT_OF_CP) number(s->n, s->median);
+        number(s->n, s->high);
+        number(s->n, s->worst);
     }
-    if (j->quad) {
-        printf(" %u |", fq.outside);
-        number(in_quad[OF_T].n, in_quad[OF_T].high);
-        for (int i = 0; i < FIGURES; i++) number(in_quad[i].n, in_quad[i].worst);
-    }
-    unsigned over = print_over(j, &f, of);
+    unsigned over = hpt_row_over(row);
+    printf(" %u |", f->open);
+    for (int i = 0; i < 1 + HPT_FIGURES; i++)
+        if (over >> i & 1) printf(" **%s**", names[i]);
+    printf(" |\n");
     fflush(stdout);
-    return over;
+}
+
+static void print_quad_head(void) {
+    printf("\n| pair, in binary128 | class | in band | wrong | worst, bands | T 99.9 %% | T worst | separation 99.9 "
+           "%% | "
+           "separation worst | CP 99.9 %% | CP worst |\n|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
+}
+
+static void print_quad_row(const hpt_row *row) {
+    const hpt_flags *f = &row->flags[1];
+    printf("| %s | %s | %u | %u |", hp_pair_name(row->pair), hpt_class_name(row->class), f->within, f->outside);
+    if (f->worst > 0)
+        printf(" %.2g |", f->worst);
+    else
+        printf(" |");
+    for (int i = 0; i < HPT_FIGURES; i++) {
+        number(row->spread[1][i].n, row->spread[1][i].high);
+        number(row->spread[1][i].n, row->spread[1][i].worst);
+    }
+    printf("\n");
 }
 
 /* ---- the worst pairs ---- */
@@ -234,7 +105,7 @@ static void print_words(const char *name, const float *words, unsigned n) {
     printf("\n");
 }
 
-static void print_record(const job *j, const record *r) {
+static void print_record(const hpt_sample *j, const hpt_record *r) {
     const hpt_truth *t = &r->truth;
     const hp_result *a = &r->result;
     print_words("primary", r->primary, hp_object_words(hp_pair_primary(j->pair)));
@@ -261,7 +132,8 @@ static void print_record(const job *j, const record *r) {
 }
 
 /* Prints the `worst` records of the greatest badness above 0, one after the other. */
-static void print_worst(const job *j, unsigned worst, const char *what, double (*badness)(const record *)) {
+static void print_worst(const hpt_sample *j, unsigned worst, const char *what,
+                        double (*badness)(const hpt_record *)) {
     double below = INFINITY;
     for (unsigned shown = 0; shown < worst;) {
         double most = 0;
@@ -280,17 +152,24 @@ static void print_worst(const job *j, unsigned worst, const char *what, double (
     }
 }
 
-static double bad_flag(const record *r) {
+static double bad_flag(const hpt_record *r) {
     return r->verdict.right || r->verdict.within ? 0 : r->verdict.margin;
 }
-static double bad_T(const record *r) {
-    return error_in(&r->verdict, OF_T);
+static double bad_T(const hpt_record *r) {
+    return hpt_error_of(&r->verdict, HPT_OF_T);
 }
-static double bad_separation(const record *r) {
-    return error_in(&r->verdict, OF_SEPARATION);
+static double bad_separation(const hpt_record *r) {
+    return hpt_error_of(&r->verdict, HPT_OF_SEPARATION);
 }
-static double bad_CP(const record *r) {
-    return error_in(&r->verdict, OF_CP);
+static double bad_CP(const hpt_record *r) {
+    return hpt_error_of(&r->verdict, HPT_OF_CP);
+}
+
+static void print_all_worst(const hpt_sample *j, unsigned worst) {
+    print_worst(j, worst, "wrong flag, in bands", bad_flag);
+    print_worst(j, worst, "T", bad_T);
+    print_worst(j, worst, "separation", bad_separation);
+    print_worst(j, worst, "CP", bad_CP);
 }
 
 /* ---- command line ---- */
@@ -333,40 +212,35 @@ static bool read_options(int argc, char **argv, options *o) {
     return true;
 }
 
-static unsigned run(const options *o, hp_pair pair, hpt_class class) {
-    job j = {.pair = pair, .class = class, .count = o->count, .quad = o->quad};
-    unsigned over = 0;
-    j.records = calloc(o->count, sizeof *j.records);
-    if (!j.records) abort();
-    measure_all(&j);
-    if (!o->worst)
-        over = print_row(&j);
-    else {
-        print_worst(&j, o->worst, "wrong flag, in bands", bad_flag);
-        print_worst(&j, o->worst, "T", bad_T);
-        print_worst(&j, o->worst, "separation", bad_separation);
-        print_worst(&j, o->worst, "CP", bad_CP);
-    }
-    free(j.records);
-    return over;
+static bool is_chosen(const options *o, hp_pair pair, int class) {
+    return (!o->pair || o->pair == pair) && (o->class < 0 || o->class == class);
 }
 
 int main(int argc, char **argv) {
-    static const hp_pair pairs[] = {
-#define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, prepared) HP_PAIR_##NAME,
-#include <hitpipe/pairs.def>
-#undef HP_PAIR
-    };
+    hpt_row rows[PAIRS * HPT_CLASSES];
+    unsigned n = 0, over = 0;
     options o;
-    unsigned over = 0;
     if (!read_options(argc, argv, &o)) {
         fputs(usage, stderr);
         return 2;
     }
-    if (!o.worst) head(o.quad);
-    for (unsigned p = 0; p < sizeof pairs / sizeof *pairs; p++)
-        for (int class = 0; class < HPT_CLASSES; class ++)
-            if ((!o.pair || o.pair == pairs[p]) && (o.class < 0 || o.class == class))
-                over += run(&o, pairs[p], (hpt_class) class);
+    if (!o.worst) print_head();
+    for (unsigned p = 0; p < PAIRS; p++)
+        for (int class = 0; class < HPT_CLASSES; class ++) {
+            if (!is_chosen(&o, pairs[p], class)) continue;
+            hpt_sample *sample = hpt_sample_new(pairs[p], (hpt_class) class, o.count, o.quad);
+            rows[n] = hpt_row_of(sample);
+            over |= hpt_row_over(&rows[n]);
+            if (o.worst)
+                print_all_worst(sample, o.worst);
+            else
+                print_row(&rows[n]);
+            hpt_sample_free(sample);
+            n++;
+        }
+    if (o.quad && !o.worst) {
+        print_quad_head();
+        for (unsigned i = 0; i < n; i++) print_quad_row(&rows[i]);
+    }
     return over ? 1 : 0;
 }
