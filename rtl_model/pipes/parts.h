@@ -6,3 +6,4 @@
 #include "rtl_model/pipes/parts/legal.part.h"
 #include "rtl_model/pipes/parts/ray.part.h"
 #include "rtl_model/pipes/parts/triangle.part.h"
+#include "rtl_model/pipes/parts/triangle_box.part.h"
