@@ -233,7 +233,8 @@ HP_INLINE void HP_NAMED(triangle_box_near_edges)(const HP_NAMED(triangle_box) * 
 }
 
 /* The diagonal of the box that goes farthest along the normal, and its point nearest to the plane: where it passes
- * through the plane, or the corner before it. Over the inside of the triangle it is nearer than any edge. */
+ * through the plane, or the corner before it. Over the inside of the triangle it is nearer than any edge; it is
+ * there when it lies on one side of all three. Which side depends on the hand of the box's frame. */
 HP_INLINE void HP_NAMED(triangle_box_near_inside)(const HP_NAMED(triangle_box) * both, num normal_overlap,
                                                   HP_NAMED(triangle_box_near) * near) {
     num zero = constant(0), one = constant(1);
@@ -242,11 +243,11 @@ HP_INLINE void HP_NAMED(triangle_box_near_inside)(const HP_NAMED(triangle_box) *
                      select(less(n.z, zero), neg(h.z), h.z)};
     num t = div(dot(n, both->corner[0]), dot(n, diagonal));
     vec3 q = scale3(clamp(t, neg(one), one), diagonal);
-    flag inside = less(zero, near->squared);
-    for (unsigned i = 0; i < 3; i++) {
-        vec3 left = cross(both->edge[i], sub3(q, both->corner[i]));
-        inside = and(inside, less(zero, dot(left, n)));
-    }
+    num left[3];
+    for (unsigned i = 0; i < 3; i++) left[i] = dot(cross(both->edge[i], sub3(q, both->corner[i])), n);
+    flag all_left = less(zero, min(min(left[0], left[1]), left[2]));
+    flag all_right = less(max(max(left[0], left[1]), left[2]), zero);
+    flag inside = and(or (all_left, all_right), less(zero, near->squared));
     near->over_inside = inside;
     near->plane = max(neg(mul(normal_overlap, both->per_normal)), zero);
     near->point = select3(inside, q, near->point);
