@@ -1,4 +1,5 @@
 /* Pipes and transformer in scalar binary32: what every other meaning is measured against. */
+#define HP_CALLED /* names.h: nothing here has to melt into its caller */
 #include "rtl_model/number/environment.h"
 #include "rtl_model/pipes/wide.h"
 #include <hitpipe/pipe.h>
