@@ -18,6 +18,14 @@
 #define HP_INLINE __attribute__((always_inline, unused)) static inline
 #endif
 
+/* A loop over copies of hardware side by side, i from `from` to less than `to`. It vanishes, so that what i indexes
+ * lives in registers; compilers leave loops in loops alone when their bodies are as long as a pipe's. */
+#ifdef __clang__
+#define HP_EACH(i, from, to) _Pragma("unroll") for (unsigned i = (from); i < (to); i++)
+#else
+#define HP_EACH(i, from, to) _Pragma("GCC unroll 32") for (unsigned i = (from); i < (to); i++)
+#endif
+
 /* types: a number, a truth value, an index, a point or direction, a pipe's answer */
 #define num HP_NAMED(num)
 #define flag HP_NAMED(flag)
