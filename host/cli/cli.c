@@ -163,6 +163,12 @@ bool hp_cli_floats(const char *text, float *numbers, size_t n) {
     return *text == 0;
 }
 
+hp_separation hp_cli_separation(const char *text, struct argp_state *state) {
+    bool on = strcmp(text, "on") == 0;
+    if (!on && strcmp(text, "off") != 0) argp_error(state, "--separation is on or off, not '%s'", text);
+    return on ? HP_SEPARATION_ON : HP_SEPARATION_OFF;
+}
+
 bool hp_cli_pair(const char *text, size_t most, size_t *first, size_t *second) {
     const char *end = digits(text, most, first);
     return end && *end == 'x' && hp_cli_whole(end + 1, most, second) && *first > 0 && *second > 0;

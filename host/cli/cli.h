@@ -59,6 +59,9 @@ bool hp_cli_numbers(const char *text, double *numbers, size_t n);
 /* The same as the nearest binary32 of each, without a double on the way. */
 bool hp_cli_floats(const char *text, float *numbers, size_t n);
 
+/* Takes the argument of --separation. Ends the program with status 2 when it is neither on nor off. */
+hp_separation hp_cli_separation(const char *text, struct argp_state *state);
+
 /* Parses two whole numbers from 1 to `most` with an 'x' between. */
 bool hp_cli_pair(const char *text, size_t most, size_t *first, size_t *second);
 

@@ -45,12 +45,6 @@ static void set_transform(query_options *query, const char *text, struct argp_st
     query->moved = true;
 }
 
-static void set_separation(query_options *query, const char *text, struct argp_state *state) {
-    bool on = strcmp(text, "on") == 0;
-    if (!on && strcmp(text, "off") != 0) argp_error(state, "--separation is on or off, not '%s'", text);
-    query->def.separation = on ? HP_SEPARATION_ON : HP_SEPARATION_OFF;
-}
-
 static void check_complete(query_options *query, struct argp_state *state) {
     query->def.pair = hp_cli_pair_named(query->pair, state);
     if (!query->primary || !query->secondary) argp_error(state, "--primary and --secondary are needed");
@@ -81,7 +75,7 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
         query->def.nearest = true;
         return 0;
     case KEY_SEPARATION:
-        set_separation(query, argument, state);
+        query->def.separation = hp_cli_separation(argument, state);
         return 0;
     case KEY_MODE:
         query->def.mode = hp_mode_from_name(argument);

@@ -1,6 +1,7 @@
-/* hitpipe trace SCENE: rays against a mesh or a heightfield. */
+/* hitpipe trace SCENE: rays against a mesh, a heightfield, spheres or cylinders. */
 #include "host/cli/trace.h"
 
+#include "host/cli/pair.h"
 #include "host/output/file.h"
 
 #include <math.h>
@@ -25,6 +26,8 @@ enum {
     KEY_RESAMPLE,
     KEY_SPACING,
     KEY_NO_SHADOWS,
+    KEY_SEPARATION,
+    KEY_OBJECTS,
     MOST_FRAMES = 1000000,
     MOST_PIXELS = 65536, /* on a side */
     MOST_SAMPLES = 32768
@@ -47,9 +50,13 @@ static const struct argp_option option_table[] = {
     {"flight", KEY_FLIGHT, "N", 0, "N frames of one ray each, from a flight path, in random directions", 2},
     {"moving", KEY_MOVING, NULL, 0, "with --flight: the transformer moves the scene every frame", 2},
     {"mode", KEY_MODE, "MODE", 0, "closest (default), any, or, with --flight, all", 2},
-    {NULL, 0, NULL, 0, "Heightfields:", 3},
-    {"resample", KEY_RESAMPLE, "RxC", 0, "R rows by C columns, bilinear, corners on corners", 3},
-    {"spacing", KEY_SPACING, "X,Y", 0, "lengths between columns and between rows (default: the file's, or 1)", 3},
+    {"separation", KEY_SEPARATION, "on|off", 0, "whether T of a miss is the distance (default: in mode all)", 2},
+    {NULL, 0, NULL, 0, "The scene:", 3},
+    {"objects", KEY_OBJECTS, "TYPE", 0,
+     "SCENE is a CSV file of objects: triangle, sphere, cylinder (default: by the numbers of its first line)", 3},
+    {"resample", KEY_RESAMPLE, "RxC", 0, "heightfields: R rows by C columns, bilinear, corners on corners", 3},
+    {"spacing", KEY_SPACING, "X,Y", 0, "heightfields: lengths between columns and rows (default: the file's, or 1)",
+     3},
     {0},
 };
 
@@ -70,6 +77,14 @@ static void set_camera(trace_options *trace, const char *text, struct argp_state
 static void set_flight(trace_options *trace, const char *text, struct argp_state *state) {
     if (!hp_cli_whole(text, MOST_FRAMES, &trace->flight) || trace->flight == 0)
         argp_error(state, "--flight takes a number of frames from 1 to %d, not '%s'", MOST_FRAMES, text);
+}
+
+static void set_objects(trace_options *trace, const char *text, struct argp_state *state) {
+#define HP_OBJECT(name, NAME, code, words, layout)                                                                   \
+    if (strcmp(text, #name) == 0 && hp_ray_pair(HP_##NAME)) trace->scene_def.objects = HP_##NAME;
+#include <hitpipe/objects.def>
+#undef HP_OBJECT
+    if (!trace->scene_def.objects) argp_error(state, "--objects is triangle, sphere or cylinder, not '%s'", text);
 }
 
 bool trace_to_exr(const char *path) {
@@ -132,14 +147,20 @@ static bool parse_rays(trace_options *trace, int key, char *argument, struct arg
         if (!trace->mode || trace->mode == HP_MODE_ZIP)
             argp_error(state, "--mode is closest, any or all, not '%s'", argument);
         return true;
+    case KEY_SEPARATION:
+        trace->separation = hp_cli_separation(argument, state);
+        return true;
     default:
         return false;
     }
 }
 
-static bool parse_heightfield(trace_options *trace, int key, char *argument, struct argp_state *state) {
+static bool parse_scene(trace_options *trace, int key, char *argument, struct argp_state *state) {
     double *spacing = trace->scene_def.spacing;
     switch (key) {
+    case KEY_OBJECTS:
+        set_objects(trace, argument, state);
+        return true;
     case KEY_SPACING:
         numbers(state, "--spacing", argument, spacing, 2);
         for (int axis = 0; axis < 2; axis++)
@@ -181,7 +202,7 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
         return 0;
     default:
         return parse_camera(trace, key, argument, state) || parse_rays(trace, key, argument, state) ||
-                       parse_heightfield(trace, key, argument, state)
+                       parse_scene(trace, key, argument, state)
                    ? 0
                    : ARGP_ERR_UNKNOWN;
     }
@@ -192,8 +213,11 @@ static const struct argp argp = {
     .options = option_table,
     .parser = parse,
     .args_doc = "SCENE",
-    .doc = "Traces rays against a scene on the board.\v"
-           "SCENE is a heightfield (.exr, .pgm) or a mesh (.obj, .ply, .stl, or any other format of assimp).",
+    .doc =
+        "Traces rays against a scene on the board.\v"
+        "SCENE is a heightfield (.exr, .pgm), a mesh (.obj, .ply, .stl, or any other format of assimp) or a file of "
+        "objects (.csv), one a line: spheres (centre xyz, radius), cylinders (cap centres xyz xyz, radius) or "
+        "triangles (v0 xyz, v1 xyz, v2 xyz).",
     .children = children,
 };
 
@@ -204,10 +228,20 @@ static hp_status take_counters(trace_run *run, hp_counters *counters, hp_fault *
     return status == HP_OK ? HP_OK : hp_cli_device_fault(run->device, status, NULL, fault);
 }
 
+hp_query_def trace_query(const trace_run *run, hp_mode mode) {
+    hp_query_def query = hp_default_query_def();
+    query.pair = hp_ray_pair(run->scene.object);
+    query.mode = mode;
+    query.separation = run->options->separation;
+    return query;
+}
+
 static hp_status bring_up(trace_run *run, hp_fault *fault) {
+    hp_status resident = hp_cli_check_resident(run->device, hp_ray_pair(run->scene.object), fault);
+    if (resident != HP_OK) return resident;
     hp_progress_bar_begin(run->bar, "uploading");
     double start = hp_seconds();
-    hp_status status = hp_upload(run->device, HP_TRIANGLE, run->scene.mesh.words, run->scene.mesh.count);
+    hp_status status = hp_upload(run->device, run->scene.object, run->scene.words, run->scene.count);
     run->host_seconds += hp_seconds() - start;
     if (status != HP_OK) return hp_cli_device_fault(run->device, status, run->options->scene_path, fault);
     return take_counters(run, &run->upload, fault);
@@ -223,8 +257,10 @@ static hp_status write_report(trace_run *run, hp_fault *fault) {
     hp_report_set(run->report, "seconds.scene_upload",
                   json_real((double)run->upload.clocks_total / (double)clock_hz));
     hp_report_set(run->report, "scene.file", hp_report_string(options->scene_path));
-    hp_report_set(run->report, "scene.triangles", json_integer((json_int_t)run->scene.mesh.count));
-    hp_report_set(run->report, "scene.degenerate", json_integer((json_int_t)run->scene.mesh.degenerate));
+    char key[32];
+    snprintf(key, sizeof key, "scene.%ss", hp_object_name(run->scene.object));
+    hp_report_set(run->report, key, json_integer((json_int_t)run->scene.count));
+    hp_report_set(run->report, "scene.degenerate", json_integer((json_int_t)run->scene.degenerate));
     hp_report_set(run->report, "mode", json_string(hp_mode_name(options->mode)));
     hp_status status = HP_OK;
     if (options->cli.report) status = hp_report_write(run->report, options->cli.report, fault);
@@ -248,10 +284,10 @@ void trace_summary(const trace_run *run, size_t rays, size_t hits) {
     const hp_identity *board = hp_identify(run->device);
     char a[HP_COUNT_TEXT], b[HP_COUNT_TEXT], c[HP_COUNT_TEXT];
     const hp_scene *scene = &run->scene;
-    printf("scene    %s: %s triangle%s", run->options->scene_path, hp_cli_count(scene->mesh.count, a),
-           scene->mesh.count == 1 ? "" : "s");
+    printf("scene    %s: %s %s%s", run->options->scene_path, hp_cli_count(scene->count, a),
+           hp_object_name(scene->object), scene->count == 1 ? "" : "s");
     if (scene->rows) printf(" from %zu x %zu samples", scene->rows, scene->columns);
-    if (scene->mesh.degenerate) printf(", %s without area", hp_cli_count(scene->mesh.degenerate, b));
+    if (scene->degenerate) printf(", %s without area", hp_cli_count(scene->degenerate, b));
     hp_counters whole = run->upload;
     hp_counters_add(&whole, &run->counters);
     double hz = (double)board->clock_hz, total = (double)whole.clocks_total;

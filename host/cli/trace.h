@@ -11,6 +11,7 @@ typedef struct trace_options {
     hp_cli cli;
     hp_scene_def scene_def;
     hp_mode mode;
+    hp_separation separation;
     const char *scene_path, *out, *png, *rays;
     size_t width, height;
     hp_camera camera; /* of the options given */
@@ -31,6 +32,9 @@ typedef struct trace_run {
     json_t *report;
     bool words; /* a summary for people on standard output */
 } trace_run;
+
+/* The query for the scene's objects in a mode. */
+hp_query_def trace_query(const trace_run *run, hp_mode mode);
 
 hp_status trace_picture(trace_run *run, hp_fault *fault);
 hp_status trace_rays(trace_run *run, hp_fault *fault);

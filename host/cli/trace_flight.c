@@ -64,8 +64,7 @@ static hp_status fly_frame(flight *f) {
         hp_status status = hp_transform(run->device, matrix);
         if (status != HP_OK) return status;
     }
-    hp_query_def query = hp_default_query_def();
-    query.mode = run->options->mode;
+    hp_query_def query = trace_query(run, run->options->mode);
     if (query.mode == HP_MODE_ALL) return hp_query_all(run->device, &query, ray, 1, take_records, f);
     hp_result result;
     hp_status status = hp_query(run->device, &query, ray, 1, &result);

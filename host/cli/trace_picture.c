@@ -16,8 +16,7 @@ static hp_status no_memory(hp_fault *fault, size_t n) {
 
 /* Asks the board, and adds what it counted to the run. */
 static hp_status ask(trace_run *run, hp_mode mode, const float *rays, size_t n, hp_result *results, hp_fault *fault) {
-    hp_query_def query = hp_default_query_def();
-    query.mode = mode;
+    hp_query_def query = trace_query(run, mode);
     double start = hp_seconds();
     hp_status status = hp_query(run->device, &query, rays, n, results);
     run->host_seconds += hp_seconds() - start;
@@ -49,7 +48,7 @@ static hp_status write_results(const trace_run *run, const hp_result *results, s
     if (!trace_to_exr(path)) return write_csv(path, results, width * height, fault);
     const hp_exr_text texts[] = {
         {"comments",
-         "T: distance along the ray; index: triangle, 4294967295 for none; F: 1 hit; CP: collision position"},
+         "T: distance along the ray; index: object, 4294967295 for none; F: 1 hit; CP: collision position"},
         {"scene", run->options->scene_path},
         {"board", hp_identify(run->device)->name},
         {NULL, NULL},

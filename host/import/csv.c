@@ -105,6 +105,20 @@ hp_status hp_csv_read(const hp_bytes *bytes, hp_object object, hp_objects *objec
     return status;
 }
 
+unsigned hp_csv_numbers(const hp_bytes *bytes) {
+    hp_text text = hp_text_open(bytes);
+    unsigned fields = 0;
+    for (bool first = true; fields == 0 && !hp_text_at_end(&text); hp_text_next_line(&text)) {
+        if (line_ends(&text)) continue;
+        bool header = first && at_header(text);
+        first = false;
+        if (header) continue;
+        for (fields = 1; !line_ends(&text); text.at++) fields += *text.at == ',';
+    }
+    hp_text_close(&text);
+    return fields;
+}
+
 hp_status hp_csv_load(const char *path, hp_object object, hp_objects *objects, hp_fault *fault) {
     *objects = (hp_objects){0};
     hp_bytes bytes;

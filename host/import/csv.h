@@ -17,6 +17,9 @@ typedef struct hp_objects {
 hp_status hp_csv_read(const hp_bytes *bytes, hp_object object, hp_objects *objects, hp_fault *fault);
 hp_status hp_csv_load(const char *path, hp_object object, hp_objects *objects, hp_fault *fault);
 
+/* The numbers in the first line that is no header: as many as its fields. 0: there is no such line. */
+unsigned hp_csv_numbers(const hp_bytes *bytes);
+
 void hp_objects_free(hp_objects *objects);
 
 #endif

@@ -1,5 +1,5 @@
-/* A shaded picture of what a camera's rays hit: elevation tints, a low sun, the sky's own light, haze in the distance
- * and, when asked for, the shadows that the board computed. */
+/* A shaded picture of what a camera's rays hit: tints by elevation, or of solids by their radius, a low sun, the
+ * sky's own light, haze in the distance and, when asked for, the shadows that the board computed. */
 #ifndef HITPIPE_HOST_PICTURE_H
 #define HITPIPE_HOST_PICTURE_H
 

@@ -460,8 +460,8 @@ static void the_terrain_has_the_papers_triangles(void **state) {
     hp_fault fault = {0};
     hp_scene_def def = {.rows = 292, .columns = 447};
     if (hp_scene_load("vectors/terrain/jacksboro.exr", &def, &scene, &fault) != HP_OK) fail_msg("%s", fault.message);
-    assert_int_equal(scene.mesh.count, 259572);
-    assert_int_equal(scene.mesh.degenerate, 0);
+    assert_int_equal(scene.count, 259572);
+    assert_int_equal(scene.degenerate, 0);
     assert_true(scene.bounds.low[2] >= 236 && scene.bounds.high[2] <= 1076);
     assert_true(scene.bounds.high[0] == 402 * 72 && scene.bounds.low[1] == -343 * 90);
     hp_scene_free(&scene);

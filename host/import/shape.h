@@ -1,0 +1,23 @@
+/* Objects as shapes in space: the box around one, and which way its surface faces. Pure functions; any thread. */
+#ifndef HITPIPE_HOST_SHAPE_H
+#define HITPIPE_HOST_SHAPE_H
+
+#include <hitpipe/types.h>
+
+typedef struct hp_bounds {
+    double low[3], high[3];
+} hp_bounds;
+
+/* Around nothing; and made to hold `inner` too. */
+hp_bounds hp_bounds_none(void);
+void hp_bounds_add(hp_bounds *bounds, const hp_bounds *inner);
+
+/* The smallest box along the axes around a triangle, sphere, aabb, obb or cylinder; around a ray's origin; for a
+ * plane its point nearest to 0,0,0. */
+hp_bounds hp_shape_bounds(hp_object object, const float *words);
+
+/* Writes the unit normal, outwards, of a triangle (towards the side on which it is anticlockwise), sphere or cylinder
+ * at a point of its surface. Zeros where there is none: a triangle without area, the centre of a sphere. */
+void hp_shape_normal(hp_object object, const float *words, const float point[3], double normal[3]);
+
+#endif
