@@ -1,5 +1,6 @@
-/* Bullet 3.24, in float as Debian builds it: GJK with EPA and its portal refinement for every pair of convex shapes, the
- * detectors it has for some pairs, casts for rays. Collision margins are set to 0, so that shapes have hitpipe's size. */
+/* Bullet 3.24, in float as Debian builds it: GJK with EPA and its portal refinement for every pair of convex shapes,
+ * the detectors it has for some pairs, casts for rays. Collision margins are set to 0, so that shapes have hitpipe's
+ * size. */
 #include "testbench/peers/row.hh"
 
 #include <BulletCollision/CollisionDispatch/SphereTriangleDetector.h>
@@ -68,8 +69,7 @@ template <class Shape> Shape *without_margin(Shape *shape) {
 }
 
 struct box : body<btBoxShape> {
-    box(const box_words &b)
-        : body(without_margin(new btBoxShape(vector_of(b.half))), placed(b.centre, b.axis)) {}
+    box(const box_words &b) : body(without_margin(new btBoxShape(vector_of(b.half))), placed(b.centre, b.axis)) {}
 };
 
 struct obb : box {
@@ -106,7 +106,7 @@ struct half_space : body<btStaticPlaneShape> {
 
 struct ray {
     static constexpr size_t words = HP_RAY_WORDS;
-    static constexpr double far = 16; /* a cast's fraction is a float, hence no further than the scenes ask for */
+    static constexpr double far = 32; /* a cast's fraction is a float, hence no further than the scenes ask for */
     btTransform from, to;
     double scale;
     ray(const float *w) {
@@ -117,8 +117,8 @@ struct ray {
 
 /* ---- tests ---- */
 
-/* What a detector or an algorithm reports: the deepest of its contacts. Without the manifold in which contacts outlive
- * a step, which hitpipe does not have either. */
+/* What a detector or an algorithm reports: the deepest of its contacts. Without the manifold in which contacts
+ * outlive a step, which hitpipe does not have either. */
 struct report : btManifoldResult {
     btScalar least = BT_LARGE_FLOAT;
     report() = default;
@@ -146,7 +146,7 @@ template <class A, class B> peer_answer pair_detector(const A &a, const B &b) {
 template <class A, class B> peer_answer epa2(const A &a, const B &b) {
     btGjkEpaSolver2::sResults results;
     btVector3 guess = b.at.getOrigin() - a.at.getOrigin();
-    bool F = btGjkEpaSolver2::Penetration(a.shape.get(), a.at, b.shape.get(), b.at, guess, results, false);
+    bool F = btGjkEpaSolver2::Penetration(a.shape.get(), a.at, b.shape.get(), b.at, guess, results, true);
     if (!F && results.status == btGjkEpaSolver2::sResults::EPA_Failed) return cannot_tell;
     return answer(F, F ? -results.distance : unsaid);
 }
@@ -156,7 +156,10 @@ template <class A, class B> peer_answer gjk2_distance(const A &a, const B &b) {
     btVector3 guess = b.at.getOrigin() - a.at.getOrigin();
     bool apart = btGjkEpaSolver2::Distance(a.shape.get(), a.at, b.shape.get(), b.at, guess, results);
     if (!apart && results.status == btGjkEpaSolver2::sResults::GJK_Failed) return cannot_tell;
-    return answer(!apart, apart ? results.distance : unsaid);
+    double T =
+        double(results.distance) - a.shape->getMargin() - b.shape->getMargin(); /* a sphere is a point and margin */
+    apart = apart && T > 0;
+    return answer(!apart, apart ? T : unsaid);
 }
 
 peer_answer box_box_detector(const obb &a, const obb &b) {
@@ -176,7 +179,8 @@ peer_answer sphere_triangle_detector(const triangle &t, const sphere &s) {
     return answer(F, F ? -distance : unsaid);
 }
 
-/* Algorithms that Bullet keeps for each pair of bodies near each other: one for all, since it has nothing to remember. */
+/* Algorithms that Bullet keeps for each pair of bodies near each other: one for all, since it has nothing to
+ * remember. */
 struct algorithms {
     btPersistentManifold manifold;
     btCollisionAlgorithmConstructionInfo info;
@@ -257,7 +261,8 @@ std::vector<peer> make_rows() {
                                            "a segment"),
         row<obb, obb, box_box_detector>(HP_PAIR_OBB_OBB, "Bullet", "btBoxBoxDetector", depth,
                                         "prefers faces to edges by 5 %"),
-        row<sphere, sphere, sphere_sphere>(HP_PAIR_SPHERE_SPHERE, "Bullet", "btSphereSphereCollisionAlgorithm", depth),
+        row<sphere, sphere, sphere_sphere>(HP_PAIR_SPHERE_SPHERE, "Bullet", "btSphereSphereCollisionAlgorithm",
+                                           depth),
         row<triangle, sphere, sphere_triangle_detector>(HP_PAIR_TRIANGLE_SPHERE, "Bullet", "SphereTriangleDetector",
                                                         depth),
         row<obb, half_space, box_plane>(HP_PAIR_OBB_PLANE, "Bullet", "btConvexPlaneCollisionAlgorithm", depth,

@@ -1,5 +1,6 @@
-/* libccd, in double: GJK with EPA and Minkowski portal refinement over support functions, which its user writes: those
- * below. Rays are segments, which GJK tells to meet or not to meet; a plane is not convex and bounded, hence absent. */
+/* libccd, in double: GJK with EPA and Minkowski portal refinement over support functions, which its user writes:
+ * those below. Rays are segments, which GJK tells to meet or not to meet; a plane is not convex and bounded, hence
+ * absent. */
 #include "testbench/peers/row.hh"
 
 #include <ccd/ccd.h>
@@ -47,8 +48,7 @@ struct aabb {
     point centre, half;
     aabb(const float *w) : centre(box_of_aabb(w).centre), half(box_of_aabb(w).half) {}
     point support(point d) const {
-        return centre +
-               point{std::copysign(half.x, d.x), std::copysign(half.y, d.y), std::copysign(half.z, d.z)};
+        return centre + point{std::copysign(half.x, d.x), std::copysign(half.y, d.y), std::copysign(half.z, d.z)};
     }
 };
 

@@ -1,5 +1,5 @@
-/* FCL 0.7, in double: its separating axes for boxes, its own solvers for pairs with spheres and planes, libccd's GJK and
- * EPA or its own for the rest. It knows no ray. */
+/* FCL 0.7, in double: its separating axes for boxes, its own solvers for pairs with spheres and planes, libccd's GJK
+ * and EPA or its own for the rest. It knows no ray. */
 #include "testbench/peers/row.hh"
 
 #include <fcl/geometry/shape/box.h>
@@ -243,8 +243,8 @@ template <const auto &solver, class A, class B> void convex_rows(std::vector<pee
     rows.push_back(
         row<A, B, touch<solver, A, B>>(pair, "FCL", ccd ? "GJK of libccd, F only" : "own GJK, F only", F_only));
     rows.push_back(row<A, B, meet<solver, A, B>>(pair, "FCL", ccd ? "GJK, EPA of libccd" : "own GJK, EPA", depth));
-    rows.push_back(
-        row<A, B, apart<solver, A, B>>(pair, "FCL", ccd ? "distance by GJK of libccd" : "distance by own GJK", distance));
+    rows.push_back(row<A, B, apart<solver, A, B>>(
+        pair, "FCL", ccd ? "distance by GJK of libccd" : "distance by own GJK", distance));
 }
 
 template <const auto &solver> void solver_rows(std::vector<peer> &rows, bool ccd) {

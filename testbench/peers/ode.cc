@@ -1,5 +1,5 @@
-/* ODE 0.16, in double: dCollide over its geoms, and dBoxBox without them. A triangle is a mesh of one triangle, a ray a
- * segment, a plane a half-space. */
+/* ODE 0.16, in double: dCollide over its geoms, and dBoxBox without them. A triangle is a mesh of one triangle, a ray
+ * a segment, a plane a half-space. */
 #include "testbench/peers/row.hh"
 
 #include <memory>
@@ -19,9 +19,14 @@ void begin() {
     static const library once;
 }
 
+void put_frame(const point axis[3], dMatrix3 frame) {
+    for (int i = 0; i < 3; i++) frame[i] = axis[i].x, frame[4 + i] = axis[i].y, frame[8 + i] = axis[i].z;
+    for (int row = 0; row < 3; row++) frame[4 * row + 3] = 0;
+}
+
 void place(dGeomID geom, point centre, const point frame[3]) {
-    dMatrix3 r = {frame[0].x, frame[1].x, frame[2].x, 0,          frame[0].y, frame[1].y,
-                  frame[2].y, 0,          frame[0].z, frame[1].z, frame[2].z, 0};
+    dMatrix3 r;
+    put_frame(frame, r);
     dGeomSetPosition(geom, centre.x, centre.y, centre.z);
     dGeomSetRotation(geom, r);
 }
@@ -71,9 +76,11 @@ struct bare_box {
     static constexpr size_t words = HP_OBB_WORDS;
     dVector3 centre, sides;
     dMatrix3 frame;
-    bare_box(const float *w)
-        : centre{w[0], w[1], w[2], 0}, sides{2.0 * w[3], 2.0 * w[4], 2.0 * w[5], 0},
-          frame{w[6], w[9], w[12], 0, w[7], w[10], w[13], 0, w[8], w[11], w[14], 0} {}
+    bare_box(const float *w) : bare_box(box_of_obb(w)) {}
+    bare_box(const box_words &b)
+        : centre{b.centre.x, b.centre.y, b.centre.z, 0}, sides{2 * b.half.x, 2 * b.half.y, 2 * b.half.z, 0} {
+        put_frame(b.axis, frame);
+    }
 };
 
 struct cylinder : geom {
@@ -180,14 +187,14 @@ template <class A, class B> void add(std::vector<peer> &rows, hp_pair pair, cons
 }
 
 template <class B> void add_ray(std::vector<peer> &rows, hp_pair pair) {
-    rows.push_back(row<ray, B, way_to<B>>(pair, "ODE", "dCollide", depth,
-                                          "a segment; from inside, T is the way out"));
+    rows.push_back(
+        row<ray, B, way_to<B>>(pair, "ODE", "dCollide", depth, "a segment; from inside, T is the way out"));
 }
 
-template <class B> void add_mesh(std::vector<peer> &rows, hp_pair pair) {
-    rows.push_back(row<triangle, B, touch<triangle, B>>(pair, "ODE", "dCollide, any contact", F_only));
-    rows.push_back(row<triangle, B, depth_of<triangle, B, contacts_max>>(pair, "ODE", "dCollide, 16 contacts", depth,
-                                                                         "depth of contacts, not of the pair"));
+template <class B> void add_mesh(std::vector<peer> &rows, hp_pair pair, const char *note) {
+    rows.push_back(row<triangle, B, touch<triangle, B>>(pair, "ODE", "dCollide, any contact", F_only, note));
+    rows.push_back(
+        row<triangle, B, depth_of<triangle, B, contacts_max>>(pair, "ODE", "dCollide, 16 contacts", depth, note));
 }
 
 std::vector<peer> make_rows() {
@@ -196,12 +203,12 @@ std::vector<peer> make_rows() {
         row<ray, triangle, ray_to_triangle>(HP_PAIR_RAY_TRIANGLE, "ODE", "dCollide", depth, "a segment"),
         row<bare_box, bare_box, boxes>(HP_PAIR_OBB_OBB, "ODE", "dBoxBox", depth, "prefers faces to edges by 5 %"),
     };
-    add_mesh<aabb>(rows, HP_PAIR_TRIANGLE_AABB);
-    add_mesh<obb>(rows, HP_PAIR_TRIANGLE_OBB);
+    add_mesh<aabb>(rows, HP_PAIR_TRIANGLE_AABB, "");
+    add_mesh<obb>(rows, HP_PAIR_TRIANGLE_OBB, "");
     add<sphere, sphere>(rows, HP_PAIR_SPHERE_SPHERE, "");
-    add_mesh<sphere>(rows, HP_PAIR_TRIANGLE_SPHERE);
+    add_mesh<sphere>(rows, HP_PAIR_TRIANGLE_SPHERE, "one side of the triangle");
     add_ray<cylinder>(rows, HP_PAIR_RAY_CYLINDER);
-    add_mesh<cylinder>(rows, HP_PAIR_TRIANGLE_CYLINDER);
+    add_mesh<cylinder>(rows, HP_PAIR_TRIANGLE_CYLINDER, "one side of the triangle");
     add<cylinder, cylinder>(rows, HP_PAIR_CYLINDER_CYLINDER, "by libccd");
     add<obb, cylinder>(rows, HP_PAIR_OBB_CYLINDER, "");
     add<obb, half_space>(rows, HP_PAIR_OBB_PLANE, "a half-space");

@@ -1,6 +1,6 @@
 /* Another library's answer to hitpipe's pairs. Each function of a library that can tell whether two of hitpipe's
- * objects meet is one row of that library's list, in its own file (fcl.cc, ode.cc, bullet.cc, ccd.cc); a pair of types
- * that it does not know has no row. The programs that compare and time them know nothing else of the libraries.
+ * objects meet is one row of that library's list, in its own file (fcl.cc, ode.cc, bullet.cc, ccd.cc); a pair of
+ * types that it does not know has no row. The programs that compare and time them know nothing else of the libraries.
  *
  * Objects are made of hitpipe's words once, outside what is timed, as the library's user would keep them. */
 #ifndef TESTBENCH_PEERS_PEER_H

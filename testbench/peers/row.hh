@@ -1,5 +1,5 @@
-/* Makes a row of a library's list out of two object classes and a function that tests one pair. The loops are here, so
- * that the call of that function is inlined into them: nothing stands between loop and library. */
+/* Makes a row of a library's list out of two object classes and a function that tests one pair. The loops are here,
+ * so that the call of that function is inlined into them: nothing stands between loop and library. */
 #ifndef TESTBENCH_PEERS_ROW_HH
 #define TESTBENCH_PEERS_ROW_HH
 
@@ -115,13 +115,15 @@ inline point unit(point a) {
     return 1 / length(a) * a;
 }
 
-/* A box of either kind: centre, half extents, axes. */
+/* A box of either kind: centre, half extents, axes of the right hand. hitpipe takes either hand; libraries that keep
+ * a frame as a quaternion cannot. The box is the same with its third axis turned round. */
 struct box_words {
     point centre, half, axis[3];
 };
 
 inline box_words box_of_obb(const float *w) {
-    return {point_of(w), point_of(w + 3), {point_of(w + 6), point_of(w + 9), point_of(w + 12)}};
+    point u = point_of(w + 6), v = point_of(w + 9), third = point_of(w + 12);
+    return {point_of(w), point_of(w + 3), {u, v, dot(cross(u, v), third) < 0 ? -1 * third : third}};
 }
 
 inline box_words box_of_aabb(const float *w) {
