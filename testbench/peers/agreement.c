@@ -97,7 +97,7 @@ static void compare_T(tally *t, hp_pair pair, const hpt_truth *truth, bool F, do
         t->T_neither++;
 }
 
-static void compare(tally *t, const sample *s, const peer *peer, unsigned i) {
+static void compare(tally *t, const sample *s, const peer *row, unsigned i) {
     const hp_result *ours = &s->ours[i];
     const hpt_truth *truth = &s->truths[i];
     const peer_answer *theirs = &s->theirs[i];
@@ -107,19 +107,19 @@ static void compare(tally *t, const sample *s, const peer *peer, unsigned i) {
         (*(fabs(truth->signed_distance) <= truth->band ? &t->band : theirs->F == truth->F ? &t->theirs : &t->ours))++;
     else {
         t->same++;
-        if (ours->F ? peer->depth : peer->distance)
+        if (ours->F ? row->depth : row->distance)
             compare_T(t, s->pair, truth, ours->F == 1, (double)ours->T, theirs->T);
     }
 }
 
-static tally compare_all(const sample *s, const peer *peer) {
+static tally compare_all(const sample *s, const peer *row) {
     tally t = {.error = room(s->count, sizeof *t.error)};
-    void *primaries = peer->make_primaries(s->primaries, s->count);
-    void *secondaries = peer->make_secondaries(s->secondaries, s->count);
-    peer->zip(primaries, secondaries, s->count, s->theirs);
-    for (unsigned i = 0; i < s->count; i++) compare(&t, s, peer, i);
-    peer->free_primaries(primaries);
-    peer->free_secondaries(secondaries);
+    void *primaries = row->make_primaries(s->primaries, s->count);
+    void *secondaries = row->make_secondaries(s->secondaries, s->count);
+    row->zip(primaries, secondaries, s->count, s->theirs);
+    for (unsigned i = 0; i < s->count; i++) compare(&t, s, row, i);
+    row->free_primaries(primaries);
+    row->free_secondaries(secondaries);
     return t;
 }
 
@@ -137,12 +137,12 @@ static void print_errors(tally *t) {
     printf(" %.0e, %.0e | %.0e |", t->error[t->errors / 2], t->error[t->errors - 1], t->our_worst);
 }
 
-static void print_row(const sample *samples, const peer *peer) {
-    printf("| %s | %s | %s |", hp_pair_name(peer->pair), peer->library, peer->function);
+static void print_row(const sample *samples, const peer *row) {
+    printf("| %s | %s | %s |", hp_pair_name(row->pair), row->library, row->function);
     tally t[CLASSES];
     unsigned failed = 0;
     for (unsigned c = 0; c < CLASSES; c++) {
-        t[c] = compare_all(&samples[c], peer);
+        t[c] = compare_all(&samples[c], row);
         failed += t[c].failed;
         printf(" %u, %u, %u, %u |", t[c].same, t[c].band, t[c].ours, t[c].theirs);
     }
@@ -152,16 +152,16 @@ static void print_row(const sample *samples, const peer *peer) {
         if (c == 0) print_errors(&t[c]);
         free(t[c].error);
     }
-    printf(failed ? " failed: %u%s" : "%.0u", failed, *peer->answers ? "; " : "");
-    printf(" %s |\n", peer->answers);
+    printf(failed ? " failed: %u%s" : "%.0u", failed, *row->answers ? "; " : "");
+    printf(" %s |\n", row->answers);
 }
 
 typedef struct printing {
     const sample *samples;
 } printing;
 
-static void print_peer(const peer *peer, void *context) {
-    print_row(((const printing *)context)->samples, peer);
+static void print_peer(const peer *row, void *context) {
+    print_row(((const printing *)context)->samples, row);
 }
 
 void peers_print_agreement(const hp_pair *pairs, unsigned n, unsigned count) {

@@ -5,7 +5,7 @@
 #include "testbench/peers/peer.h"
 
 /* Calls `with` for every row of every library that knows the pair. */
-typedef void peers_visitor(const peer *peer, void *context);
+typedef void peers_visitor(const peer *row, void *context);
 void peers_of(hp_pair pair, peers_visitor *with, void *context);
 
 /* The pairs asked for, `pairs` of them. */
