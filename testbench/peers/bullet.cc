@@ -256,9 +256,10 @@ std::vector<peer> make_rows() {
     std::vector<peer> rows = {
         row<ray, triangle, ray_to_triangle>(HP_PAIR_RAY_TRIANGLE, "Bullet", "btTriangleRaycastCallback", depth,
                                             "a segment; its edges reach out by a tolerance"),
-        row<ray, sphere, cast<sphere>>(HP_PAIR_RAY_SPHERE, "Bullet", "btSubsimplexConvexCast", depth, "a segment"),
+        row<ray, sphere, cast<sphere>>(HP_PAIR_RAY_SPHERE, "Bullet", "btSubsimplexConvexCast", depth,
+                                       "a segment; from inside, a miss"),
         row<ray, cylinder, cast<cylinder>>(HP_PAIR_RAY_CYLINDER, "Bullet", "btSubsimplexConvexCast", depth,
-                                           "a segment"),
+                                           "a segment; from inside, a miss"),
         row<obb, obb, box_box_detector>(HP_PAIR_OBB_OBB, "Bullet", "btBoxBoxDetector", depth,
                                         "prefers faces to edges by 5 %"),
         row<sphere, sphere, sphere_sphere>(HP_PAIR_SPHERE_SPHERE, "Bullet", "btSphereSphereCollisionAlgorithm",

@@ -122,7 +122,7 @@ contacts &no_contacts() {
 
 peer_answer deepest_of(bool F, const contacts &found) {
     double T = F && found.empty() ? unsaid : 0;
-    for (const auto &c : found) T = std::fmax(T, c.penetration_depth);
+    for (const auto &c : found) T = std::fmax(T, std::fabs(c.penetration_depth)); /* some solvers say -depth */
     return answer(F, F ? T : unsaid);
 }
 
@@ -151,7 +151,7 @@ peer_answer spheres_apart(const sphere &a, const sphere &b) {
 peer_answer triangle_with_sphere(const triangle &t, const sphere &s) {
     double T = unsaid;
     bool F = fcl::detail::sphereTriangleIntersect<double>(s.shape, s.at, t.a, t.b, t.c, nullptr, &T, nullptr);
-    return answer(F, F ? T : unsaid);
+    return answer(F, F ? -T : unsaid); /* it says -depth */
 }
 
 peer_answer triangle_from_sphere(const triangle &t, const sphere &s) {
@@ -190,8 +190,9 @@ peer_answer box_touches_half_space(const obb &b, const half_space &h) {
 
 template <const auto &solver, class Object> peer_answer with_triangle(const triangle &t, const Object &o) try {
     double T = unsaid;
-    bool F = solver.shapeTriangleIntersect(o.shape, o.at, t.a, t.b, t.c, nullptr, &T, nullptr);
-    return answer(F, F ? T : unsaid);
+    vector position, normal;
+    bool F = solver.shapeTriangleIntersect(o.shape, o.at, t.a, t.b, t.c, &position, &T, &normal);
+    return answer(F, F ? std::fabs(T) : unsaid);
 } catch (const fcl::detail::FailedAtThisConfiguration &) {
     return cannot_tell;
 }
@@ -232,17 +233,17 @@ template <const auto &solver, class A, class B> peer_answer apart(const A &a, co
 
 template <const auto &solver, class Object> void triangle_rows(std::vector<peer> &rows, hp_pair pair, bool ccd) {
     rows.push_back(row<triangle, Object, touches_triangle<solver, Object>>(
-        pair, "FCL", ccd ? "GJK of libccd, F only" : "own GJK, F only", F_only));
+        pair, "FCL", ccd ? "MPR of libccd, F only" : "own GJK, F only", F_only));
     rows.push_back(row<triangle, Object, with_triangle<solver, Object>>(
-        pair, "FCL", ccd ? "GJK, EPA of libccd" : "own GJK, EPA", depth));
+        pair, "FCL", ccd ? "MPR of libccd, depth" : "own GJK, EPA", depth));
     rows.push_back(row<triangle, Object, from_triangle<solver, Object>>(
         pair, "FCL", ccd ? "distance by GJK of libccd" : "distance by own GJK", distance));
 }
 
 template <const auto &solver, class A, class B> void convex_rows(std::vector<peer> &rows, hp_pair pair, bool ccd) {
     rows.push_back(
-        row<A, B, touch<solver, A, B>>(pair, "FCL", ccd ? "GJK of libccd, F only" : "own GJK, F only", F_only));
-    rows.push_back(row<A, B, meet<solver, A, B>>(pair, "FCL", ccd ? "GJK, EPA of libccd" : "own GJK, EPA", depth));
+        row<A, B, touch<solver, A, B>>(pair, "FCL", ccd ? "MPR of libccd, F only" : "own GJK, F only", F_only));
+    rows.push_back(row<A, B, meet<solver, A, B>>(pair, "FCL", ccd ? "MPR of libccd, depth" : "own GJK, EPA", depth));
     rows.push_back(row<A, B, apart<solver, A, B>>(
         pair, "FCL", ccd ? "distance by GJK of libccd" : "distance by own GJK", distance));
 }
