@@ -24,7 +24,10 @@ struct sphere {
     point centre;
     double radius;
     sphere(const float *w) : centre(point_of(w)), radius(w[3]) {}
-    point support(point d) const { return centre + radius / length(d) * d; }
+    point support(point d) const {
+        double size = length(d);
+        return size > 0 ? centre + radius / size * d : centre;
+    }
 };
 
 struct box {
