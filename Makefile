@@ -134,6 +134,7 @@ tests: $(TESTS) $(TOOLS) $(BENCHES)
 
 bench: all $(BENCHES) ## time the datapath and the engines, as ratios in one run
 	@for b in $(BENCHES); do $$b || exit 1; done
+	@$(MAKE) bench-peers
 
 include $(wildcard mk/*.mk)
 

@@ -1,13 +1,13 @@
 # What .ci/run needs beyond `make check`.
 deps-ci: ## install the packages of the continuous integration
-	@mk/deps.sh $(PACKAGES_BUILD) $(PACKAGES_CHECK) $(PACKAGES_CI)
+	@mk/deps.sh $(PACKAGES_BUILD) $(PACKAGES_CHECK) $(PACKAGES_CI) $(PACKAGES_PEERS)
 
-FORMATTED = $(shell git ls-files '*.c' '*.h')
+FORMATTED = $(shell git ls-files '*.c' '*.h' '*.cc' '*.hh')
 
-format: ## lay out all C files by .clang-format
+format: ## lay out all C and C++ files by .clang-format
 	clang-format -i $(FORMATTED)
 
-format-check: ## fail if a C file is not laid out by .clang-format
+format-check: ## fail if one is not laid out by .clang-format
 	@clang-format --dry-run --Werror $(FORMATTED) && echo "$(words $(FORMATTED)) files well laid out"
 
 # The programs that start threads, under ThreadSanitizer.
