@@ -133,6 +133,88 @@ HP_INLINE num HP_NAMED(obb_cylinder_edge)(HP_NAMED(side_view) v, num s, num h, n
     return HP_NAMED(rim_depth)(v.t, h, r, a, support);
 }
 
+/* The start and the way of edge j of the four along axis k. */
+typedef struct HP_NAMED(box_edge) {
+    vec3 start, way;
+} HP_NAMED(box_edge);
+
+HP_INLINE HP_NAMED(box_edge) HP_NAMED(edge_of_box)(HP_NAMED(box_there) box, unsigned k, unsigned j) {
+    unsigned i = (k + 1) % 3, l = (k + 2) % 3;
+    vec3 half = scale3(box.e[k], box.b[k]), one = scale3(box.e[i], box.b[i]), other = scale3(box.e[l], box.b[l]);
+    vec3 middle = j & 1 ? add3(box.c, one) : sub3(box.c, one);
+    middle = j & 2 ? add3(middle, other) : sub3(middle, other);
+    return (HP_NAMED(box_edge)){sub3(middle, half), add3(half, half)};
+}
+
+/* How far p is outside of the box; negative inside. */
+HP_INLINE num HP_NAMED(outside_box)(HP_NAMED(box_there) box, vec3 p) {
+    vec3 to = sub3(p, box.c);
+    num far = constant(-INFINITY);
+    for (unsigned i = 0; i < 3; i++) far = max(sub(abs(dot(to, box.b[i])), box.e[i]), far);
+    return far;
+}
+
+/* The middle of what the box leaves of the cylinder's axis. */
+HP_INLINE HP_NAMED(common) HP_NAMED(axis_in_box)(HP_NAMED(box_there) box, num h) {
+    num low = neg(h), high = h, zero = constant(0);
+    for (unsigned i = 0; i < 3; i++) {
+        num at = dot(box.c, box.b[i]), one = div(sub(at, box.e[i]), box.b[i].z),
+            other = div(add(at, box.e[i]), box.b[i].z);
+        flag slants = less(zero, abs(box.b[i].z));
+        low = max(select(slants, min(one, other), low), low);
+        high = min(select(slants, max(one, other), high), high);
+    }
+    num z = mul(constant(0.5f), add(min(low, h), max(high, neg(h))));
+    vec3 p = {zero, zero, z};
+    return (HP_NAMED(common)){p, HP_NAMED(outside_box)(box, p)};
+}
+
+/* The point of a chord through the cylinder's middle, the one that a face's normal crosses all of, that comes nearest
+ * to the box's middle plane. */
+HP_INLINE HP_NAMED(common) HP_NAMED(chord_in_box)(HP_NAMED(box_there) box, unsigned k, num h, num r) {
+    vec3 end = HP_NAMED(furthest_of_cylinder)(box.b[k], h, r);
+    num part = div(dot(box.c, box.b[k]), dot(end, box.b[k]));
+    vec3 p = scale3(clamp(part, constant(-1), constant(1)), end);
+    return (HP_NAMED(common)){p, HP_NAMED(outside_box)(box, p)};
+}
+
+/* A point of both: where an edge comes in, or the cylinder's axis or a chord does. */
+HP_INLINE vec3 HP_NAMED(obb_cylinder_common)(HP_NAMED(box_there) box, const HP_NAMED(side_view) v[3], num h, num r) {
+    HP_NAMED(common) best = HP_NAMED(axis_in_box)(box, h);
+    for (unsigned k = 0; k < 3; k++) {
+        best = HP_NAMED(less_outside)(HP_NAMED(chord_in_box)(box, k, h, r), best);
+        for (unsigned j = 0; j < 4; j++) {
+            HP_NAMED(box_edge) edge = HP_NAMED(edge_of_box)(box, k, j);
+            num u = HP_NAMED(along_u)(v[k].t, edge.start);
+            best = HP_NAMED(less_outside)(HP_NAMED(edge_in_cylinder)(edge.start, edge.way, u, h, r), best);
+        }
+    }
+    return best.p;
+}
+
+/* The distance of a miss. The nearest point of the box is on an edge, or within a face; then the cylinder's is the
+ * one furthest against the face. */
+HP_INLINE num HP_NAMED(obb_cylinder_distance)(HP_NAMED(box_there) box, num h, num r) {
+    num least = HP_NAMED(point_to_cylinder)(box.c, h, r);
+    REPEAT(k, 3) {
+        REPEAT(j, 4) {
+            HP_NAMED(box_edge) edge = HP_NAMED(edge_of_box)(box, k, j);
+            least = min(HP_NAMED(edge_to_cylinder)(edge.start, edge.way, h, r), least);
+        }
+        vec3 end = HP_NAMED(furthest_of_cylinder)(box.b[k], h, r);
+        REPEAT(j, 2) {
+            vec3 to = sub3(j ? end : neg3(end), box.c);
+            num squared = constant(0);
+            for (unsigned i = 0; i < 3; i++) {
+                num beyond = max(sub(abs(dot(to, box.b[i])), box.e[i]), constant(0));
+                squared = add(squared, mul(beyond, beyond));
+            }
+            least = min(sqrt(squared), least);
+        }
+    }
+    return least;
+}
+
 HP_INLINE answer HP_NAMED(obb_cylinder_test)(const num primary[15], const num prepared[15], bits index,
                                              bool separation) {
     HP_NAMED(cylinder) c = HP_NAMED(get_cylinder)(prepared);
@@ -156,5 +238,8 @@ HP_INLINE answer HP_NAMED(obb_cylinder_test)(const num primary[15], const num pr
     }
     flag F = and(box.sound, at_least(depth, zero));
     UNLESS_ANY(F) if (!separation) return miss();
-    return answer_of(F, index, abs(depth), vec3_of(primary, 0));
+    vec3 CP = HP_NAMED(move_out)(c, HP_NAMED(obb_cylinder_common)(box, v, h, r));
+    if (!separation) return answer_of(F, index, abs(depth), CP);
+    num distance = HP_NAMED(obb_cylinder_distance)(box, h, r);
+    return answer_with(F, index, abs(depth), select(box.sound, distance, constant(INFINITY)), CP);
 }

@@ -5,5 +5,6 @@
 #include "rtl_model/pipes/parts/rim.part.h"
 #include "rtl_model/pipes/parts/legal.part.h"
 #include "rtl_model/pipes/parts/ray.part.h"
+#include "rtl_model/pipes/parts/cylinder_distance.part.h"
 #include "rtl_model/pipes/parts/triangle.part.h"
 #include "rtl_model/pipes/parts/triangle_box.part.h"

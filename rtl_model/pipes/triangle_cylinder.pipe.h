@@ -74,6 +74,23 @@ HP_INLINE vec3 HP_NAMED(triangle_cylinder_common)(const vec3 v[3], const HP_NAME
     return HP_NAMED(less_outside)(HP_NAMED(triangle_cylinder_pierced)(v, t, n, h, r), best).p;
 }
 
+/* The distance of a miss. The nearest point of the triangle is on an edge, or within the face; then the cylinder's is
+ * the one furthest along -n or n. */
+HP_INLINE num HP_NAMED(triangle_cylinder_distance)(const vec3 v[3], vec3 n, num h, num r) {
+    num least = constant(INFINITY);
+    REPEAT(i, 3) {
+        least = min(HP_NAMED(edge_to_cylinder)(v[i], sub3(v[(i + 1) % 3], v[i]), h, r), least);
+    }
+    vec3 end = HP_NAMED(furthest_of_cylinder)(n, h, r), ab = sub3(v[1], v[0]), ac = sub3(v[2], v[0]);
+    REPEAT(i, 2) {
+        flag finite;
+        vec3 p = i ? end : neg3(end), a = sub3(v[0], p), b = sub3(v[1], p);
+        num squared = HP_NAMED(nearest_of_triangle)(a, b, ab, ac, sub3(ac, ab), &finite).squared;
+        least = min(sqrt(squared), least);
+    }
+    return least;
+}
+
 HP_INLINE answer HP_NAMED(triangle_cylinder_test)(const num primary[9], const num prepared[15], bits index,
                                                   bool separation) {
     HP_NAMED(cylinder) c = HP_NAMED(get_cylinder)(prepared);
@@ -108,5 +125,7 @@ HP_INLINE answer HP_NAMED(triangle_cylinder_test)(const num primary[9], const nu
     flag F = and(sound, at_least(depth, zero));
     UNLESS_ANY(F) if (!separation) return miss();
     vec3 CP = HP_NAMED(move_out)(c, HP_NAMED(triangle_cylinder_common)(v, t, u, n, h, r));
-    return answer_of(F, index, abs(depth), CP);
+    if (!separation) return answer_of(F, index, abs(depth), CP);
+    num distance = HP_NAMED(triangle_cylinder_distance)(v, n, h, r);
+    return answer_with(F, index, abs(depth), select(sound, distance, constant(INFINITY)), CP);
 }
