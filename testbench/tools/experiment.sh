@@ -11,7 +11,7 @@ printf '{"preset": "wscg2007", "name": "PCI at half its peak", "link": {"to_boar
 row() {
     name=$1 board=$2
     shift 2
-    "$HITPIPE" trace vectors/terrain/jacksboro.exr --resample 292x447 --flight 20 --board "$board" "$@" --json >"$work/out"
+    "$HITPIPE" trace vectors/terrain/jacksboro.exr --resample 292x447 --flight 20 --separation off --board "$board" "$@" --json >"$work/out"
     field() { # mean seconds of a phase, from the object frame.seconds
         awk -v phase="\"$1\"" '/"seconds"/ {inside = 1} inside && $0 ~ phase {found = 1}
             found && /"mean"/ {gsub(/[^0-9.e-]/, "", $2); printf "%.3f", $2 * 1000; exit}' "$work/frame"

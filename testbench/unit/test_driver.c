@@ -202,6 +202,7 @@ static bool count_records(void *context, const uint32_t *primary, const uint32_t
 static hp_status ask_all(bench *b, tally *seen) {
     hp_query_def def = hp_default_query_def();
     def.mode = HP_MODE_ALL;
+    def.separation = HP_SEPARATION_OFF;
     memset(seen, 0, sizeof *seen);
     seen->b = b;
     return hp_query_all(b->device, &def, b->rays[0], RAYS, count_records, seen);
@@ -252,6 +253,7 @@ static void any_and_zip(void **state) {
         assert_int_equal(results[i].stencil, k == TRIANGLES);
     }
     def.mode = HP_MODE_ZIP;
+    def.separation = HP_SEPARATION_OFF;
     def.first = 3;
     assert_int_equal(hp_query(b->device, &def, b->rays[0], 15, results), HP_OK);
     for (unsigned i = 0; i < 15; i++) assert_memory_equal(&results[i], &b->truth[i][i + 3], sizeof *results);
@@ -273,6 +275,7 @@ static void a_stencil_masks(void **state) {
         assert_memory_equal(&results[i], &truth, sizeof truth);
     }
     def.mode = HP_MODE_ALL;
+    def.separation = HP_SEPARATION_OFF;
     tally seen = {.b = b};
     assert_int_equal(hp_query_all(b->device, &def, b->rays[0], RAYS, count_records, &seen), HP_OK);
     for (unsigned i = 0; i < RAYS; i++)
@@ -428,6 +431,7 @@ static void a_slow_taker_is_no_silent_board(void **state) {
     hp_query_def query = hp_default_query_def();
     hp_device_def def = patient(0);
     query.mode = HP_MODE_ALL;
+    query.separation = HP_SEPARATION_OFF;
     def.timeout_ms = 10;
     b->plan = (plan){0};
     assert_int_equal(connect_with(b, &def), HP_OK);
