@@ -48,8 +48,7 @@ HP_INLINE num HP_NAMED(ray_triangle_distance)(vec3 s, vec3 d, vec3 e1, vec3 e2) 
     num inverse = div(constant(1), dot(d, d)), infinity = constant(INFINITY);
     num ta = mul(dot(a, d), inverse), tb = mul(dot(b, d), inverse), tc = mul(dot(c, d), inverse);
     HP_NAMED(sight)
-    at_a = {sub3(a, scale3(ta, d)), ta},
-    at_b = {sub3(b, scale3(tb, d)), tb}, at_c = {sub3(c, scale3(tc, d)), tc};
+    at_a = {sub3(a, scale3(ta, d)), ta}, at_b = {sub3(b, scale3(tb, d)), tb}, at_c = {sub3(c, scale3(tc, d)), tc};
     num vertices = min(min(HP_NAMED(seen)(at_a), HP_NAMED(seen)(at_b)), HP_NAMED(seen)(at_c));
     num edges =
         min(min(HP_NAMED(edge_seen)(at_a, at_b), HP_NAMED(edge_seen)(at_a, at_c)), HP_NAMED(edge_seen)(at_b, at_c));
