@@ -174,28 +174,70 @@ HP_INLINE HP_NAMED(cylinders_contact)
     return (HP_NAMED(cylinders_contact)){depth, closer, at, HP_NAMED(cylinders_outside)(at, o.h1, o.r1)};
 }
 
-HP_INLINE HP_NAMED(cylinders_contact) HP_NAMED(cylinders_cap_or_side)(HP_NAMED(cylinders_roles) o, bool separation) {
-    num zero = constant(0), cap = sub(add(o.h1, add(mul(o.h2, o.g), mul(o.r2, o.s))), o.along), depth, closer;
-    HP_NAMED(cylinders_contact)
-    caps = HP_NAMED(cylinders_contact_along)(o, (vec3){constant(1), zero, zero}, cap, cap);
-    vec3 d = HP_NAMED(cylinders_side)(o, separation, &depth, &closer);
-    return HP_NAMED(cylinders_shallower)(caps, HP_NAMED(cylinders_contact_along)(o, d, depth, closer));
-}
-
 HP_INLINE HP_NAMED(cylinders_contact) HP_NAMED(cylinders_rim)(HP_NAMED(cylinders_roles) o, bool separation) {
     num depth, closer;
     vec3 d = HP_NAMED(cylinders_rims)(o, separation, &depth, &closer);
     return HP_NAMED(cylinders_contact_along)(o, d, depth, closer);
 }
 
-/* Side against side: where the axes cross, seen along their common normal. */
+/* What |at + slope t| <= half leaves of low <= t <= high. */
+HP_INLINE void HP_NAMED(cylinders_cut)(num at, num slope, num half, num *low, num *high) {
+    *low = max(*low, div(sub(neg(half), at), slope));
+    *high = min(*high, div(sub(half, at), slope));
+}
+
+/* What of a diameter lies beyond a chord's middle. */
+HP_INLINE num HP_NAMED(cylinders_chord)(num r, num away) {
+    return sqrt(max(mul(sub(r, away), add(r, away)), constant(0)));
+}
+
+/* The middle of what the other cuts out of the line (t, y, z), |t| <= h1, of one. */
+HP_INLINE HP_NAMED(cylinders_contact)
+    HP_NAMED(cylinders_along)(HP_NAMED(cylinders_roles) o, num y, num z, num f, num closer) {
+    num half = constant(0.5f), dy = sub(y, o.across), dz = sub(z, o.height);
+    num level = neg(mul(o.s, dy)), beside = mul(o.g, dy);
+    num low = sub(neg(o.h1), o.along), high = sub(o.h1, o.along);
+    HP_NAMED(cylinders_cut)(beside, o.s, HP_NAMED(cylinders_chord)(o.r2, dz), &low, &high);
+    HP_NAMED(cylinders_cut)(level, o.g, o.h2, &low, &high);
+    num x = clamp(add(o.along, mul(half, add(low, high))), neg(o.h1), o.h1), dx = sub(x, o.along);
+    vec3 seen = {add(level, mul(o.g, dx)), add(beside, mul(o.s, dx)), dz};
+    return (HP_NAMED(cylinders_contact)){f, closer, {x, y, z}, HP_NAMED(cylinders_outside)(seen, o.h2, o.r2)};
+}
+
+/* The same across the axis of one, |t| <= r1: flat through flat. The third coordinate is chosen last. */
+HP_INLINE HP_NAMED(cylinders_contact) HP_NAMED(cylinders_across)(HP_NAMED(cylinders_roles) o, num f) {
+    num zero = constant(0), half = constant(0.5f), r1 = add(o.r1, zero);
+    num x = clamp(o.along, neg(o.h1), o.h1), dx = sub(x, o.along);
+    num level = add(mul(o.g, dx), mul(o.s, o.across)), beside = sub(mul(o.s, dx), mul(o.g, o.across));
+    num low = neg(r1), high = r1;
+    HP_NAMED(cylinders_cut)(beside, o.g, add(o.r2, zero), &low, &high);
+    HP_NAMED(cylinders_cut)(neg(level), o.s, o.h2, &low, &high);
+    num y = clamp(mul(half, add(low, high)), neg(r1), r1);
+    beside = add(beside, mul(o.g, y));
+    num reach1 = HP_NAMED(cylinders_chord)(o.r1, y), reach2 = HP_NAMED(cylinders_chord)(o.r2, beside);
+    num z = min(mul(half, add(max(sub(o.height, reach2), zero), min(o.height, reach1))), reach1);
+    vec3 seen = {sub(level, mul(o.s, y)), beside, sub(z, o.height)};
+    return (HP_NAMED(cylinders_contact)){f, f, {x, y, z}, HP_NAMED(cylinders_outside)(seen, o.h2, o.r2)};
+}
+
+HP_INLINE HP_NAMED(cylinders_contact) HP_NAMED(cylinders_cap_or_side)(HP_NAMED(cylinders_roles) o, bool separation) {
+    num zero = constant(0), cap = sub(add(o.h1, add(mul(o.h2, o.g), mul(o.r2, o.s))), o.along), depth, closer;
+    HP_NAMED(cylinders_contact)
+    caps = HP_NAMED(cylinders_contact_along)(o, (vec3){constant(1), zero, zero}, cap, cap);
+    vec3 d = HP_NAMED(cylinders_side)(o, separation, &depth, &closer);
+    HP_NAMED(cylinders_contact) side = HP_NAMED(cylinders_contact_along)(o, d, depth, closer);
+    num i = div(o.r1, sqrt(add(mul(d.y, d.y), mul(d.z, d.z))));
+    HP_NAMED(cylinders_contact) line = HP_NAMED(cylinders_along)(o, mul(i, d.y), mul(i, d.z), depth, closer);
+    return HP_NAMED(cylinders_shallower)(caps, HP_NAMED(cylinders_shallower)(side, line));
+}
+
+/* Side against side: a line along the axis of one at a third coordinate that suits both radii. */
 HP_INLINE HP_NAMED(cylinders_contact) HP_NAMED(cylinders_lines)(HP_NAMED(cylinders_roles) o) {
     num zero = constant(0), f = sub(add(o.r1, o.r2), o.height);
-    num t = clamp(div(o.across, o.s), neg(o.h2), o.h2), x = clamp(add(o.along, mul(t, o.g)), neg(o.h1), o.h1);
-    num low = max(sub(o.height, o.r2), zero), high = min(o.height, add(o.r1, zero));
-    vec3 at = {x, zero, mul(constant(0.5f), add(low, high))}, way = sub3(at, (vec3){o.along, o.across, o.height});
-    vec3 seen = {sub(mul(o.g, way.x), mul(o.s, way.y)), add(mul(o.s, way.x), mul(o.g, way.y)), way.z};
-    return (HP_NAMED(cylinders_contact)){f, f, at, HP_NAMED(cylinders_outside)(seen, o.h2, o.r2)};
+    num below = max(sub(o.height, o.r2), zero), above = min(o.height, add(o.r1, zero));
+    num z = mul(constant(0.5f), add(below, above));
+    return HP_NAMED(cylinders_shallower)(HP_NAMED(cylinders_along)(o, zero, z, f, f),
+                                         HP_NAMED(cylinders_across)(o, f));
 }
 
 /* Both cylinders in the frame of the bisectors e, origin in the middle of the first; and one turned frame for each.
@@ -231,8 +273,8 @@ HP_INLINE HP_NAMED(cylinders_meeting) HP_NAMED(cylinders_meeting_of)(const num f
     minus = sub3(minus, scale3(dot(minus, plus), plus));
     num two_sin = length(minus); /* 0: parallel; then there is no e-, and none is needed */
     minus = scale3(select(less(zero, two_sin), div(one, two_sin), zero), minus);
-    num cos = mul(half, two_cos), sin = mul(half, two_sin), g = sub(mul(cos, cos), mul(sin, sin)),
-        s = mul(two_cos, sin);
+    num cos = mul(half, two_cos), sin = mul(half, two_sin);
+    num g = max(sub(mul(cos, cos), mul(sin, sin)), zero), s = mul(two_cos, sin);
 
     num x = dot(c, plus), y = dot(c, minus);
     vec3 rest = sub3(sub3(c, scale3(x, plus)), scale3(y, minus));
@@ -286,6 +328,8 @@ HP_INLINE vec3 HP_NAMED(cylinders_common_point)(HP_NAMED(cylinders_meeting) m, H
         q = HP_NAMED(cylinders_into)(q, m.cos, m.sin, h1, r1);
         q = add3(m.c, HP_NAMED(cylinders_into)(sub3(q, m.c), m.cos, neg(m.sin), h2, r2));
     }
+    vec3 seen = {add(mul(m.cos, q.x), mul(m.sin, q.y)), sub(mul(m.cos, q.y), mul(m.sin, q.x)), q.z};
+    q = select3(less(HP_NAMED(cylinders_outside)(seen, m.first.h1, m.first.r1), contact.lack), q, contact.at);
     num share = select(less(zero, m.c.z), div(clamp(q.z, zero, m.c.z), m.c.z), zero);
     vec3 middle = scale3(constant(0.5f), add3(p0, p1));
     return add3(middle, add3(add3(scale3(q.x, m.plus), scale3(q.y, m.minus)), scale3(share, m.rest)));
@@ -314,10 +358,12 @@ HP_INLINE answer HP_NAMED(cylinder_cylinder_test)(const num primary[7], const nu
     flat = HP_NAMED(cylinders_shallower)(
         HP_NAMED(cylinders_on_first)(m, HP_NAMED(cylinders_cap_or_side)(one, separation)),
         HP_NAMED(cylinders_on_second)(m, HP_NAMED(cylinders_cap_or_side)(two, separation)));
-    HP_NAMED(cylinders_contact) lines = HP_NAMED(cylinders_lines)(one);
+    HP_NAMED(cylinders_contact) lines = HP_NAMED(cylinders_lines)(one), back = HP_NAMED(cylinders_lines)(two);
     num all = add(add(one.along, two.along), add(add(one.h1, one.h2), lines.depth));
     flag legal = and(and(at_least(one.r1, zero), at_least(one.r2, zero)), less(abs(all), infinity));
-    flat = HP_NAMED(cylinders_shallower)(HP_NAMED(cylinders_on_first)(m, lines), flat);
+    lines =
+        HP_NAMED(cylinders_shallower)(HP_NAMED(cylinders_on_first)(m, lines), HP_NAMED(cylinders_on_second)(m, back));
+    flat = HP_NAMED(cylinders_shallower)(lines, flat);
     UNLESS_ANY(and(legal, at_least(flat.depth, zero))) if (!separation) return miss();
 
     HP_NAMED(cylinders_contact)
