@@ -3,6 +3,11 @@
 #include "rtl_model/number/graph.h"
 #include "rtl_model/number/names.h"
 
+/* Calls here: an operator of the graph is a call already, and thirteen pipes melted into one function keep a compiler
+ * busy for minutes. */
+#undef HP_INLINE
+#define HP_INLINE __attribute__((noinline, unused)) static
+
 typedef struct num {
     bool wired;  /* false: a constant, in the graph once an operator takes it */
     float value; /* of the constant */
