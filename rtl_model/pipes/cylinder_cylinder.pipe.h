@@ -26,7 +26,7 @@ typedef struct HP_NAMED(cylinders_roles) {
     num h1, r1, h2, r2;
 } HP_NAMED(cylinders_roles);
 
-/* Never a NaN when `least` is none. */
+/* No NaN when `least` is none. */
 HP_INLINE num HP_NAMED(cylinders_least)(num least, num f) {
     return select(less(f, least), f, least);
 }
@@ -86,7 +86,7 @@ HP_INLINE vec3 HP_NAMED(cylinders_side)(HP_NAMED(cylinders_roles) o, bool separa
     if (separation) {
         vec3 near = d;
         REPEAT(step, 8) near = HP_NAMED(cylinders_turn)(w, p, B, o.g, near);
-        *closer = HP_NAMED(cylinders_least)(*depth, HP_NAMED(cylinders_side_depth)(o, w, near));
+        *closer = HP_NAMED(cylinders_side_depth)(o, w, near);
     }
     return (vec3){constant(0), select(less(o.across, constant(0)), neg(d.y), d.y), d.z};
 }
@@ -225,10 +225,10 @@ HP_INLINE HP_NAMED(cylinders_contact) HP_NAMED(cylinders_cap_or_side)(HP_NAMED(c
     HP_NAMED(cylinders_contact)
     caps = HP_NAMED(cylinders_contact_along)(o, (vec3){constant(1), zero, zero}, cap, cap);
     vec3 d = HP_NAMED(cylinders_side)(o, separation, &depth, &closer);
-    HP_NAMED(cylinders_contact) side = HP_NAMED(cylinders_contact_along)(o, d, depth, closer);
     num i = div(o.r1, sqrt(add(mul(d.y, d.y), mul(d.z, d.z))));
+    HP_NAMED(cylinders_contact) side = HP_NAMED(cylinders_contact_along)(o, d, depth, closer);
     HP_NAMED(cylinders_contact) line = HP_NAMED(cylinders_along)(o, mul(i, d.y), mul(i, d.z), depth, closer);
-    return HP_NAMED(cylinders_shallower)(caps, HP_NAMED(cylinders_shallower)(side, line));
+    return HP_NAMED(cylinders_shallower)(HP_NAMED(cylinders_shallower)(caps, side), line);
 }
 
 /* Side against side: a line along the axis of one at a third coordinate that suits both radii. */
@@ -274,7 +274,7 @@ HP_INLINE HP_NAMED(cylinders_meeting) HP_NAMED(cylinders_meeting_of)(const num f
     num two_sin = length(minus); /* 0: parallel; then there is no e-, and none is needed */
     minus = scale3(select(less(zero, two_sin), div(one, two_sin), zero), minus);
     num cos = mul(half, two_cos), sin = mul(half, two_sin);
-    num g = max(sub(mul(cos, cos), mul(sin, sin)), zero), s = mul(two_cos, sin);
+    num g = max(sub(mul(cos, cos), mul(sin, sin)), constant(0x1p-24f)), s = mul(two_cos, sin);
 
     num x = dot(c, plus), y = dot(c, minus);
     vec3 rest = sub3(sub3(c, scale3(x, plus)), scale3(y, minus));
@@ -354,25 +354,26 @@ HP_INLINE answer HP_NAMED(cylinder_cylinder_test)(const num primary[7], const nu
     HP_NAMED(cylinders_meeting) m = HP_NAMED(cylinders_meeting_of)(first, prepared);
     HP_NAMED(cylinders_roles) one = m.first, two = m.second;
 
-    HP_NAMED(cylinders_contact)
-    flat = HP_NAMED(cylinders_shallower)(
-        HP_NAMED(cylinders_on_first)(m, HP_NAMED(cylinders_cap_or_side)(one, separation)),
-        HP_NAMED(cylinders_on_second)(m, HP_NAMED(cylinders_cap_or_side)(two, separation)));
-    HP_NAMED(cylinders_contact) lines = HP_NAMED(cylinders_lines)(one), back = HP_NAMED(cylinders_lines)(two);
-    num all = add(add(one.along, two.along), add(add(one.h1, one.h2), lines.depth));
+    HP_NAMED(cylinders_contact) best = HP_NAMED(cylinders_on_first)(m, HP_NAMED(cylinders_lines)(one));
+    num all = add(add(one.along, two.along), add(add(one.h1, one.h2), best.depth));
     flag legal = and(and(at_least(one.r1, zero), at_least(one.r2, zero)), less(abs(all), infinity));
-    lines =
-        HP_NAMED(cylinders_shallower)(HP_NAMED(cylinders_on_first)(m, lines), HP_NAMED(cylinders_on_second)(m, back));
-    flat = HP_NAMED(cylinders_shallower)(lines, flat);
-    UNLESS_ANY(and(legal, at_least(flat.depth, zero))) if (!separation) return miss();
 
     HP_NAMED(cylinders_contact)
-    rim = HP_NAMED(cylinders_shallower)(HP_NAMED(cylinders_on_first)(m, HP_NAMED(cylinders_rim)(one, separation)),
-                                        HP_NAMED(cylinders_on_second)(m, HP_NAMED(cylinders_rim)(two, separation)));
-    HP_NAMED(cylinders_contact) best = HP_NAMED(cylinders_shallower)(flat, rim);
+    more[5] = {
+        HP_NAMED(cylinders_on_second)(m, HP_NAMED(cylinders_lines)(two)),
+        HP_NAMED(cylinders_on_first)(m, HP_NAMED(cylinders_cap_or_side)(one, separation)),
+        HP_NAMED(cylinders_on_second)(m, HP_NAMED(cylinders_cap_or_side)(two, separation)),
+    };
+    for (unsigned i = 0; i < 3; i++) best = HP_NAMED(cylinders_shallower)(best, more[i]);
+    UNLESS_ANY(and(legal, at_least(best.depth, zero))) if (!separation) return miss();
+
+    more[3] = HP_NAMED(cylinders_on_first)(m, HP_NAMED(cylinders_rim)(one, separation));
+    more[4] = HP_NAMED(cylinders_on_second)(m, HP_NAMED(cylinders_rim)(two, separation));
+    for (unsigned i = 3; i < 5; i++) best = HP_NAMED(cylinders_shallower)(best, more[i]);
     flag F = and(legal, at_least(best.depth, zero));
     UNLESS_ANY(F) if (!separation) return miss();
     vec3 CP = HP_NAMED(cylinders_common_point)(m, best, vec3_of(first, 0), vec3_of(first, 3));
     if (!separation) return answer_of(F, index, best.depth, CP);
-    return answer_with(F, index, best.depth, select(legal, max(neg(best.closer), zero), infinity), CP);
+    num distance = neg(HP_NAMED(cylinders_least)(best.depth, best.closer));
+    return answer_with(F, index, best.depth, select(legal, distance, infinity), CP);
 }
