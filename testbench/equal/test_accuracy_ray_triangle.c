@@ -51,7 +51,7 @@ static void holds(void **state) {
         float ray[6], triangle[9];
         c->make(&random, i, ray, triangle);
         hp_result answer = hp_pipe_test(HP_PAIR_RAY_TRIANGLE, HP_GRADUAL, false, ray, triangle, i);
-        hpt_verdict verdict = hpt_judge_ray_triangle(ray, triangle, &answer);
+        hpt_verdict verdict = hpt_judge_result(HP_PAIR_RAY_TRIANGLE, ray, triangle, &answer);
         hpt_tally_add(&tally, &answer, &verdict);
         if (verdict.measured) errors[measured++] = verdict.T_error;
     }

@@ -60,10 +60,6 @@ hpt_verdict hpt_judge(hp_pair pair, const float *primary, const float *secondary
     return verdict;
 }
 
-hpt_verdict hpt_judge_ray_triangle(const float ray[6], const float triangle[9], const hp_result *answer) {
-    return hpt_judge_result(HP_PAIR_RAY_TRIANGLE, ray, triangle, answer);
-}
-
 hpt_verdict hpt_judge_result(hp_pair pair, const float *primary, const float *secondary, const hp_result *answer) {
     hpt_truth truth = hpt_truth_of(pair, primary, secondary);
     hpt_given given = {answer->F != 0, answer->T, {answer->CP[0], answer->CP[1], answer->CP[2]}};

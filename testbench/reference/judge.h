@@ -30,8 +30,6 @@ hpt_verdict hpt_judge(hp_pair pair, const float *primary, const float *secondary
 /* The same of a record without separation, and the oracle asked on the way. */
 hpt_verdict hpt_judge_result(hp_pair pair, const float *primary, const float *secondary, const hp_result *answer);
 
-hpt_verdict hpt_judge_ray_triangle(const float ray[6], const float triangle[9], const hp_result *answer);
-
 /* Verdicts added up. Begin with zeros. */
 typedef struct hpt_tally {
     unsigned count, hits;

@@ -127,13 +127,13 @@ static void judge_tells_right_from_wrong(void **state) {
     (void)state;
     const float *beside = RAY(1, -1, 8, 0, 0, -2), *touching = RAY(1, -1e-9F, 8, 0, 0, -2);
     hp_result hit = {.F = 1, .T = 4}, miss = {.T = INFINITY};
-    assert_true(hpt_judge_ray_triangle(beside, triangle, &miss).right);
-    hpt_verdict wrong = hpt_judge_ray_triangle(beside, triangle, &hit);
+    assert_true(hpt_judge_result(HP_PAIR_RAY_TRIANGLE, beside, triangle, &miss).right);
+    hpt_verdict wrong = hpt_judge_result(HP_PAIR_RAY_TRIANGLE, beside, triangle, &hit);
     assert_true(!wrong.right && !wrong.within && wrong.margin > 1);
-    wrong = hpt_judge_ray_triangle(touching, triangle, &hit);
+    wrong = hpt_judge_result(HP_PAIR_RAY_TRIANGLE, touching, triangle, &hit);
     assert_true(!wrong.right && wrong.within && wrong.measured);
-    hpt_verdict off =
-        hpt_judge_ray_triangle(RAY(1, 1, 8, 0, 0, -2), triangle, &(hp_result){.F = 1, .T = 5, .CP = {1, 1, 0}});
+    hpt_verdict off = hpt_judge_result(HP_PAIR_RAY_TRIANGLE, RAY(1, 1, 8, 0, 0, -2), triangle,
+                                       &(hp_result){.F = 1, .T = 5, .CP = {1, 1, 0}});
     assert_true(off.right && off.measured);
     near(off.T_error, 0.25);
     assert_true(off.CP_error == 0);
