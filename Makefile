@@ -82,10 +82,13 @@ all: $(HITPIPE) $(SHLIB) ## build program and library
 help: ## list these targets
 	@grep -hE '^[a-z-]+:.*## ' Makefile mk/*.mk | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 16
 
+# Where speed does not matter the vocabulary is called, not melted into each pipe: a fraction of the compiling time.
+CALLED := $(if $(or $(SANITIZE),$(filter -O0,$(OPT))),-DHP_CALLED)
+
 define WIDE
 $(BUILD)/rtl_model/pipes/wide_$1/%.o: rtl_model/pipes/wide.c
 	$$(call say,CC)mkdir -p $$(@D)
-	$$(run)$$(CC) $$(ALL_CFLAGS) $$(ISA_FLAGS_$1) -DHP_WIDE_ISA_$1=1 -DHP_WIDE_ISA=$1 -DHP_PIPE=$$* \
+	$$(run)$$(CC) $$(ALL_CFLAGS) $$(ISA_FLAGS_$1) $$(CALLED) -DHP_WIDE_ISA_$1=1 -DHP_WIDE_ISA=$1 -DHP_PIPE=$$* \
 	    -DHP_PIPE_FILE='"rtl_model/pipes/$$*.pipe.h"' -c $$< -o $$@
 endef
 $(foreach i,$(ISAS),$(eval $(call WIDE,$i)))

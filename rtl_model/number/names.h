@@ -66,6 +66,7 @@
 #define dot HP_NAMED(dot)
 #define length HP_NAMED(length)
 #define clamp HP_NAMED(clamp)
+#define could_count HP_NAMED(could_count)
 #define answer_of HP_NAMED(answer_of)
 #define answer_with HP_NAMED(answer_with)
 #define miss HP_NAMED(miss)

@@ -12,7 +12,8 @@
  *   select(f, a, b)            f ? a : b
  *   and or not neg abs         gates and wires; neg and abs touch the sign bit only
  *   UNLESS_ANY(f)              "if (no lane has f)": a short cut for programs, which leaves the hardware as it is.
- * What it skips may only be what cannot change the answer.
+ * What it skips may only be what cannot change the answer; or, of pairs whose depth is not above `bar`, anything: a
+ * pipe is asked then for what is deeper than what is already there.
  *   REPEAT(i, n)               a loop of n steps, n a literal: one piece of hardware that is used n times a test.
  * The pipe's interval is then n (nested loops multiply), and an operator of the body counts once.
  *
@@ -82,6 +83,11 @@ HP_INLINE num length(vec3 a) {
 
 HP_INLINE num clamp(num x, num low, num high) {
     return min(max(x, low), high);
+}
+
+/* Whether a depth of at most `bound` may be one that counts: that of a hit, and deeper than the bar. */
+HP_INLINE flag could_count(num bound, num bar) {
+    return and(at_least(bound, constant(0)), less(bar, bound));
 }
 
 /* The output multiplexers: what a hit computed, or the answer of a miss: its distance and nothing else. */

@@ -42,8 +42,8 @@ static answer trace_pipe(hp_graph *g, hp_pair pair, bool separation) {
 #define HP_PAIR(name, NAME, code, typed, PRIMARY, SECONDARY, words)                                                  \
     case HP_PAIR_##NAME:                                                                                             \
         graph_##name##_prepare(secondary, prepared);                                                                 \
-        return separation ? graph_##name##_test(primary, prepared, index, true)                                      \
-                          : graph_##name##_test(primary, prepared, index, false);
+        return separation ? graph_##name##_test(primary, prepared, index, true, constant(-INFINITY))                 \
+                          : graph_##name##_test(primary, prepared, index, false, constant(-INFINITY));
 #include <hitpipe/pairs.def>
 #undef HP_PAIR
     }

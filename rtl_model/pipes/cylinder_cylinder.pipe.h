@@ -123,7 +123,7 @@ HP_INLINE vec3 HP_NAMED(cylinders_rim_step)(HP_NAMED(cylinders_roles) o, num *m)
 
 HP_INLINE vec3 HP_NAMED(cylinders_rims)(HP_NAMED(cylinders_roles) o, bool separation, num *depth, num *closer) {
     num m = mul(constant(100), o.r1);
-    for (unsigned step = 0; step < 5; step++) HP_NAMED(cylinders_rim_step)(o, &m);
+    for (unsigned step = 0; step < 7; step++) HP_NAMED(cylinders_rim_step)(o, &m);
     vec3 d = HP_NAMED(cylinders_rim_step)(o, &m);
     *depth = *closer = HP_NAMED(cylinders_overlap)(o, d);
     if (separation) {
@@ -220,8 +220,13 @@ HP_INLINE HP_NAMED(cylinders_contact) HP_NAMED(cylinders_across)(HP_NAMED(cylind
     return (HP_NAMED(cylinders_contact)){f, f, {x, y, z}, HP_NAMED(cylinders_outside)(seen, o.h2, o.r2)};
 }
 
+/* f(a1). */
+HP_INLINE num HP_NAMED(cylinders_cap)(HP_NAMED(cylinders_roles) o) {
+    return sub(add(o.h1, add(mul(o.h2, o.g), mul(o.r2, o.s))), o.along);
+}
+
 HP_INLINE HP_NAMED(cylinders_contact) HP_NAMED(cylinders_cap_or_side)(HP_NAMED(cylinders_roles) o, bool separation) {
-    num zero = constant(0), cap = sub(add(o.h1, add(mul(o.h2, o.g), mul(o.r2, o.s))), o.along), depth, closer;
+    num zero = constant(0), cap = HP_NAMED(cylinders_cap)(o), depth, closer;
     HP_NAMED(cylinders_contact)
     caps = HP_NAMED(cylinders_contact_along)(o, (vec3){constant(1), zero, zero}, cap, cap);
     vec3 d = HP_NAMED(cylinders_side)(o, separation, &depth, &closer);
@@ -347,7 +352,7 @@ HP_INLINE void HP_NAMED(cylinder_cylinder_prepare)(const num secondary[7], num p
 }
 
 HP_INLINE answer HP_NAMED(cylinder_cylinder_test)(const num primary[7], const num prepared[11], bits index,
-                                                  bool separation) {
+                                                  bool separation, num bar) {
     num zero = constant(0), infinity = constant(INFINITY);
     num first[11];
     HP_NAMED(cylinder_cylinder_prepare)(primary, first);
@@ -358,6 +363,10 @@ HP_INLINE answer HP_NAMED(cylinder_cylinder_test)(const num primary[7], const nu
     num all = add(add(one.along, two.along), add(add(one.h1, one.h2), best.depth));
     flag legal = and(and(at_least(one.r1, zero), at_least(one.r2, zero)), less(abs(all), infinity));
 
+    UNLESS_ANY(and(
+        legal, could_count(min(min(HP_NAMED(cylinders_cap)(one), HP_NAMED(cylinders_cap)(two)), best.depth), bar)))
+    if (!separation) return miss();
+
     HP_NAMED(cylinders_contact)
     more[5] = {
         HP_NAMED(cylinders_on_second)(m, HP_NAMED(cylinders_lines)(two)),
@@ -365,7 +374,7 @@ HP_INLINE answer HP_NAMED(cylinder_cylinder_test)(const num primary[7], const nu
         HP_NAMED(cylinders_on_second)(m, HP_NAMED(cylinders_cap_or_side)(two, separation)),
     };
     for (unsigned i = 0; i < 3; i++) best = HP_NAMED(cylinders_shallower)(best, more[i]);
-    UNLESS_ANY(and(legal, at_least(best.depth, zero))) if (!separation) return miss();
+    UNLESS_ANY(and(legal, could_count(best.depth, bar))) if (!separation) return miss();
 
     more[3] = HP_NAMED(cylinders_on_first)(m, HP_NAMED(cylinders_rim)(one, separation));
     more[4] = HP_NAMED(cylinders_on_second)(m, HP_NAMED(cylinders_rim)(two, separation));

@@ -43,9 +43,9 @@ HP_INLINE void HP_OF(load_chunk)(const float *primary, num *p) {
 }
 
 HP_INLINE void HP_OF(closest_one)(const num *p, const num *s, bits index, float *best_T, uint32_t *best_index) {
-    answer a = HP_OF(test)(p, s, index, false);
-    if (!a.any) return;
     num T = HP_NAMED(reload)(best_T);
+    answer a = HP_OF(test)(p, s, index, false, T);
+    if (!a.any) return;
     flag closer = and(a.F, HP_OF(closer)(a.T, T));
     HP_NAMED(store)(best_T, select(closer, a.T, T));
     HP_NAMED(store_bits)(best_index, select_bits(closer, a.index, HP_NAMED(load_bits)(best_index)));
@@ -75,7 +75,8 @@ HP_APART void HP_OF(any_chunk)(const float *primary, const float *prepared, size
     for (size_t i = 0; i < n && HP_NAMED(any)(open); i++) {
         num s[HP_PREPARED_MAX];
         HP_NAMED(broadcast)(prepared + i * HP_WORDS(prepared_words), HP_WORDS(prepared_words), s);
-        answer a = HP_OF(test)(p, s, constant_bits(index + (uint32_t)i), false);
+        num bar = select(open, constant(-INFINITY), constant(INFINITY));
+        answer a = HP_OF(test)(p, s, constant_bits(index + (uint32_t)i), false, bar);
         if (!a.any) continue;
         flag first = and(a.F, open);
         bits found = select_bits(first, a.index, HP_NAMED(load_bits)(best_index));
@@ -88,7 +89,7 @@ HP_APART void HP_OF(any_chunk)(const float *primary, const float *prepared, size
 HP_INLINE void HP_OF(nearest_one)(const num *p, const num *s, bits index, float *best_T, uint32_t *best_index,
                                   uint32_t *best_F) {
     bits one = constant_bits(1);
-    answer a = HP_OF(test)(p, s, index, true);
+    answer a = HP_OF(test)(p, s, index, true, constant(-INFINITY));
     if (!a.any) return;
     num T = HP_NAMED(reload)(best_T);
     bits F_bits = HP_NAMED(load_bits)(best_F);
@@ -153,7 +154,8 @@ HP_INLINE void HP_OF(each_pair)(const float *primaries, unsigned primary_step, c
         (secondaries + i * HP_WORDS(secondary_words), HP_WORDS(secondary_words), HP_WORDS(secondary_words), lanes,
          secondary);
         HP_OF(prepare_lanes)(moves, m, secondary, ready);
-        HP_NAMED(write_pairs)(HP_OF(test)(primary, ready, constant_bits(0), separation), lanes, i, out);
+        HP_NAMED(write_pairs)
+        (HP_OF(test)(primary, ready, constant_bits(0), separation, constant(-INFINITY)), lanes, i, out);
     }
 }
 

@@ -216,21 +216,23 @@ HP_INLINE num HP_NAMED(obb_cylinder_distance)(HP_NAMED(box_there) box, num h, nu
 }
 
 HP_INLINE answer HP_NAMED(obb_cylinder_test)(const num primary[15], const num prepared[15], bits index,
-                                             bool separation) {
+                                             bool separation, num bar) {
     HP_NAMED(cylinder) c = HP_NAMED(get_cylinder)(prepared);
     num h = c.h, r = c.r, zero = constant(0), one = constant(1);
     HP_NAMED(box_there) box = HP_NAMED(obb_cylinder_box)(c, primary);
 
     num depth = sub(h, abs(box.c.z));
     for (unsigned i = 0; i < 3; i++) depth = add(depth, mul(box.e[i], abs(box.b[i].z)));
+    REPEAT(k, 3) depth = min(HP_NAMED(obb_cylinder_face)(box.c, box.b[k], box.e[k], h, r), depth);
+    UNLESS_ANY(and(box.sound, could_count(depth, bar))) if (!separation) return miss();
+
     depth = min(HP_NAMED(obb_cylinder_vertex)(box, r), depth);
     HP_NAMED(side_view) v[3];
     REPEAT(k, 3) {
         v[k] = HP_NAMED(obb_cylinder_view)(box, k, r);
         depth = min(sub(add(r, v[k].wide_u), abs(v[k].c_u)), depth);
-        depth = min(HP_NAMED(obb_cylinder_face)(box.c, box.b[k], box.e[k], h, r), depth);
     }
-    UNLESS_ANY(and(box.sound, at_least(depth, zero))) if (!separation) return miss();
+    UNLESS_ANY(and(box.sound, could_count(depth, bar))) if (!separation) return miss();
 
     REPEAT(k, 3) {
         depth = min(HP_NAMED(obb_cylinder_edge)(v[k], one, h, r), depth);

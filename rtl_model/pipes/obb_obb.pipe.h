@@ -308,7 +308,8 @@ HP_INLINE HP_NAMED(two_boxes) HP_NAMED(obb_obb_pair)(const num primary[15], cons
     return p;
 }
 
-HP_INLINE answer HP_NAMED(obb_obb_test)(const num primary[15], const num prepared[18], bits index, bool separation) {
+HP_INLINE answer HP_NAMED(obb_obb_test)(const num primary[15], const num prepared[18], bits index, bool separation,
+                                        num bar) {
     HP_NAMED(two_boxes) p = HP_NAMED(obb_obb_pair)(primary, prepared);
     num zero = constant(0), infinity = constant(INFINITY), squares[3][3], overlap[3][3], length2[3][3];
     flag parallel[3][3];
@@ -322,7 +323,7 @@ HP_INLINE answer HP_NAMED(obb_obb_test)(const num primary[15], const num prepare
         F = and(F, and(at_least(of_a, zero), at_least(of_b, zero)));
         faces = min(faces, min(of_a, of_b));
     }
-    UNLESS_ANY(F) if (!separation) return miss();
+    UNLESS_ANY(and(F, less(bar, faces))) if (!separation) return miss();
 
     num edges = infinity;
     HP_EACH (i, 0, 3)
@@ -334,7 +335,7 @@ HP_INLINE answer HP_NAMED(obb_obb_test)(const num primary[15], const num prepare
             parallel[i][j] = less(length2[i][j], constant(0x1p-46f));
             F = and(F, or (parallel[i][j], at_least(overlap[i][j], zero)));
         }
-    UNLESS_ANY(F) if (!separation) return miss();
+    UNLESS_ANY(and(F, less(bar, faces))) if (!separation) return miss();
 
     HP_EACH (i, 0, 3)
         HP_EACH (j, 0, 3) {

@@ -23,7 +23,8 @@ HP_INLINE vec3 HP_NAMED(obb_plane_towards)(num along, num h, vec3 axis) {
     return scale3(select(less(along, constant(0)), neg(h), h), axis);
 }
 
-HP_INLINE answer HP_NAMED(obb_plane_test)(const num primary[15], const num prepared[4], bits index, bool separation) {
+HP_INLINE answer HP_NAMED(obb_plane_test)(const num primary[15], const num prepared[4], bits index, bool separation,
+                                          num bar) {
     vec3 c = vec3_of(primary, 0), h = vec3_of(primary, 3), n = vec3_of(prepared, 0);
     vec3 u = vec3_of(primary, 6), v = vec3_of(primary, 9), w = vec3_of(primary, 12);
     num zero = constant(0), infinity = constant(INFINITY);
@@ -35,7 +36,7 @@ HP_INLINE answer HP_NAMED(obb_plane_test)(const num primary[15], const num prepa
     num T = sub(reach, distance);
     flag sizes = and(and(at_least(h.x, zero), at_least(h.y, zero)), at_least(h.z, zero));
     flag legal = and(sizes, HP_NAMED(finite)(T)), F = and(legal, at_most(distance, reach));
-    UNLESS_ANY(F) if (!separation) return miss();
+    UNLESS_ANY(and(F, less(bar, T))) if (!separation) return miss();
 
     vec3 corner =
         add3(add3(HP_NAMED(obb_plane_towards)(along.x, h.x, u), HP_NAMED(obb_plane_towards)(along.y, h.y, v)),

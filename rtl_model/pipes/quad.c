@@ -22,7 +22,7 @@ HP_APART answer run(hp_pair pair, bool separation, const float *primary, const f
         load_words(primary, HP_##PRIMARY##_WORDS, p);                                                                \
         load_words(secondary, HP_##SECONDARY##_WORDS, s);                                                            \
         quad_##name##_prepare(s, prepared);                                                                          \
-        return quad_##name##_test(p, prepared, 0, separation);
+        return quad_##name##_test(p, prepared, 0, separation, constant(-INFINITY));
 #include <hitpipe/pairs.def>
 #undef HP_PAIR
     }

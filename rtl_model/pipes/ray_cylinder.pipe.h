@@ -24,7 +24,8 @@ HP_INLINE HP_NAMED(axial_line) HP_NAMED(axial_line_of)(HP_NAMED(cylinder) c, vec
 }
 
 HP_INLINE answer HP_NAMED(ray_cylinder_test)(const num primary[6], const num prepared[15], bits index,
-                                             bool separation) {
+                                             bool separation, num bar) {
+    (void)bar; /* what it would spare comes too late to be worth asking */
     vec3 o = vec3_of(primary, 0), d = vec3_of(primary, 3);
     HP_NAMED(cylinder) c = HP_NAMED(get_cylinder)(prepared);
     num zero = constant(0), infinity = constant(INFINITY);

@@ -13,7 +13,9 @@ HP_INLINE void HP_NAMED(ray_sphere_prepare)(const num secondary[4], num prepared
     prepared[3] = HP_NAMED(legal_size)(secondary[3]);
 }
 
-HP_INLINE answer HP_NAMED(ray_sphere_test)(const num primary[6], const num prepared[4], bits index, bool separation) {
+HP_INLINE answer HP_NAMED(ray_sphere_test)(const num primary[6], const num prepared[4], bits index, bool separation,
+                                           num bar) {
+    (void)bar; /* what it would spare comes too late to be worth asking */
     vec3 o = vec3_of(primary, 0), d = vec3_of(primary, 3);
     num r = prepared[3], zero = constant(0), infinity = constant(INFINITY);
 

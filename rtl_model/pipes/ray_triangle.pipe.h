@@ -59,7 +59,9 @@ HP_INLINE num HP_NAMED(ray_triangle_distance)(vec3 s, vec3 d, vec3 e1, vec3 e2) 
     return select(legal, sqrt(min(min(vertices, edges), origin)), infinity);
 }
 
-HP_INLINE answer HP_NAMED(ray_triangle_test)(const num ray[6], const num prepared[9], bits index, bool separation) {
+HP_INLINE answer HP_NAMED(ray_triangle_test)(const num ray[6], const num prepared[9], bits index, bool separation,
+                                             num bar) {
+    (void)bar; /* what it would spare comes too late to be worth asking */
     vec3 o = vec3_of(ray, 0), d = vec3_of(ray, 3);
     vec3 v0 = vec3_of(prepared, 0), e1 = vec3_of(prepared, 3), e2 = vec3_of(prepared, 6);
     num zero = constant(0), infinity = constant(INFINITY);

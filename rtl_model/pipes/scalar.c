@@ -1,12 +1,11 @@
 /* Pipes and transformer in scalar binary32: what every other meaning is measured against. */
 #define HP_CALLED /* names.h: nothing here has to melt into its caller */
 #include "rtl_model/number/environment.h"
+#include "rtl_model/number/one_nan.h"
 #include "rtl_model/pipes/wide.h"
 #include <hitpipe/pipe.h>
 #include <math.h>
 #include <string.h>
-
-#define HP_NAN __builtin_nanf("") /* 0x7FC00000 */
 
 #define HP_MEANING gradual
 #define HP_SCALAR_FLUSH 0

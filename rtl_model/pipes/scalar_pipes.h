@@ -9,17 +9,12 @@ HP_INLINE void HP_NAMED(load_words)(const float *in, unsigned n, num *out) {
     for (unsigned i = 0; i < n; i++) out[i] = HP_NAMED(load)(in[i]);
 }
 
-/* Hardware operators have one NaN. */
-HP_INLINE float HP_NAMED(store)(num x) {
-    return x == x ? x : HP_NAN;
-}
-
 HP_INLINE hp_result HP_NAMED(result_of)(answer a) {
     if (!a.any) return (hp_result){.index = HP_NO_INDEX, .T = INFINITY, .stencil = 1};
     return (hp_result){.F = a.F,
                        .index = a.index,
-                       .T = HP_NAMED(store)(a.T),
-                       .CP = {HP_NAMED(store)(a.CP.x), HP_NAMED(store)(a.CP.y), HP_NAMED(store)(a.CP.z)},
+                       .T = hp_one_nan(a.T),
+                       .CP = {hp_one_nan(a.CP.x), hp_one_nan(a.CP.y), hp_one_nan(a.CP.z)},
                        .stencil = 1};
 }
 
@@ -32,8 +27,9 @@ HP_APART hp_result HP_NAMED(pipe_test)(hp_pair pair, bool separation, const floa
         HP_NAMED(load_words)(primary, HP_##PRIMARY##_WORDS, p);                                                      \
         HP_NAMED(load_words)(secondary, HP_##SECONDARY##_WORDS, s);                                                  \
         HP_NAMED(name##_prepare)(s, prepared);                                                                       \
-        return HP_NAMED(result_of)(separation ? HP_NAMED(name##_test)(p, prepared, index, true)                      \
-                                              : HP_NAMED(name##_test)(p, prepared, index, false));
+        return HP_NAMED(result_of)(separation                                                                        \
+                                       ? HP_NAMED(name##_test)(p, prepared, index, true, constant(-INFINITY))        \
+                                       : HP_NAMED(name##_test)(p, prepared, index, false, constant(-INFINITY)));
 #include <hitpipe/pairs.def>
 #undef HP_PAIR
     }
@@ -50,5 +46,5 @@ HP_APART void HP_NAMED(transform)(hp_object object, const float *matrix, const f
     if (object == HP_##NAME) HP_NAMED(transform_##NAME)(m, s, moved);
 #include "rtl_model/transformer/transformer.def"
 #undef HP_MOVED
-    for (unsigned i = 0; i < words; i++) out[i] = HP_NAMED(store)(moved[i]);
+    for (unsigned i = 0; i < words; i++) out[i] = hp_one_nan(moved[i]);
 }

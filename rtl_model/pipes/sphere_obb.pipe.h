@@ -20,8 +20,8 @@ HP_INLINE num HP_NAMED(sphere_obb_excess)(num p, num beyond) {
     return select(less(p, constant(0)), neg(beyond), beyond);
 }
 
-HP_INLINE answer HP_NAMED(sphere_obb_test)(const num primary[4], const num prepared[15], bits index,
-                                           bool separation) {
+HP_INLINE answer HP_NAMED(sphere_obb_test)(const num primary[4], const num prepared[15], bits index, bool separation,
+                                           num bar) {
     vec3 c = vec3_of(primary, 0), h = vec3_of(prepared, 3);
     vec3 u = vec3_of(prepared, 6), v = vec3_of(prepared, 9), w = vec3_of(prepared, 12);
     num r = primary[3], zero = constant(0), infinity = constant(INFINITY);
@@ -34,7 +34,7 @@ HP_INLINE answer HP_NAMED(sphere_obb_test)(const num primary[4], const num prepa
 
     num T = sub(r, s);
     flag legal = and(at_least(r, zero), HP_NAMED(finite)(T)), F = and(legal, at_most(s, r));
-    UNLESS_ANY(F) if (!separation) return miss();
+    UNLESS_ANY(and(F, less(bar, T))) if (!separation) return miss();
 
     vec3 excess = {HP_NAMED(sphere_obb_excess)(p.x, beyond.x), HP_NAMED(sphere_obb_excess)(p.y, beyond.y),
                    HP_NAMED(sphere_obb_excess)(p.z, beyond.z)};

@@ -14,14 +14,14 @@ HP_INLINE void HP_NAMED(sphere_sphere_prepare)(const num secondary[4], num prepa
 }
 
 HP_INLINE answer HP_NAMED(sphere_sphere_test)(const num primary[4], const num prepared[4], bits index,
-                                              bool separation) {
+                                              bool separation, num bar) {
     num r1 = primary[3], r2 = prepared[3], zero = constant(0), infinity = constant(INFINITY);
     vec3 c1 = vec3_of(primary, 0), between = sub3(vec3_of(prepared, 0), c1);
     num c = length(between), reach = add(r1, r2);
 
     num T = sub(reach, c);
     flag legal = and(at_least(r1, zero), HP_NAMED(finite)(T)), F = and(legal, at_most(c, reach));
-    UNLESS_ANY(F) if (!separation) return miss();
+    UNLESS_ANY(and(F, less(bar, T))) if (!separation) return miss();
 
     num first = max(neg(add(r1, zero)), sub(c, r2)), last = min(add(r1, zero), add(c, r2));
     num middle = mul(constant(0.5f), add(first, last));

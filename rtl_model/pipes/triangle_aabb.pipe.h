@@ -12,7 +12,7 @@ HP_INLINE void HP_NAMED(triangle_aabb_prepare)(const num box[6], num prepared[6]
 }
 
 HP_INLINE answer HP_NAMED(triangle_aabb_test)(const num triangle[9], const num prepared[6], bits index,
-                                              bool separation) {
+                                              bool separation, num bar) {
     vec3 centre = vec3_of(prepared, 0), corner[3];
     HP_NAMED(triangle_box) both = {.half = vec3_of(prepared, 3)};
     for (unsigned i = 0; i < 3; i++) {
@@ -24,7 +24,7 @@ HP_INLINE answer HP_NAMED(triangle_aabb_test)(const num triangle[9], const num p
 
     HP_NAMED(triangle_box_overlaps) overlaps = HP_NAMED(triangle_box_shadows)(&both);
     flag F = HP_NAMED(triangle_box_meets)(&both, &overlaps);
-    UNLESS_ANY(F) if (!separation) return miss();
+    UNLESS_ANY(and(F, less(bar, HP_NAMED(triangle_box_bound)(&overlaps)))) if (!separation) return miss();
 
     num T = HP_NAMED(triangle_box_depth)(&both, &overlaps);
     HP_NAMED(triangle_box_near) near = HP_NAMED(triangle_box_nearest)(&both, &overlaps);

@@ -32,13 +32,17 @@ HP_INLINE num HP_NAMED(triangle_cylinder_face)(vec3 n, vec3 v0, vec3 v2, num h, 
     return div(add(side, reach), sqrt(add(across, mul(n.z, n.z))));
 }
 
-/* The depth of the vertex nearest to the axis under the side. s: squared distances from the axis. */
+/* The depth of the vertex nearest to the axis under the side. s: squared distances from the axis. From the axis
+ * itself all ways are as good; one must be tried, for a triangle that is a point has no edge to give another. */
 HP_INLINE num HP_NAMED(triangle_cylinder_vertex)(const vec3 v[3], const num s[3], num r) {
     flag first = less(s[0], s[1]), last = less(s[2], min(s[0], s[1]));
     num x = select(last, v[2].x, select(first, v[0].x, v[1].x));
     num y = select(last, v[2].y, select(first, v[0].y, v[1].y));
+    num nearest = min(min(s[0], s[1]), s[2]), one = constant(1);
+    flag apart = less(constant(0), nearest);
+    x = select(apart, x, one), nearest = select(apart, nearest, one);
     num a = add(mul(x, v[0].x), mul(y, v[0].y)), b = add(mul(x, v[1].x), mul(y, v[1].y));
-    num c = add(mul(x, v[2].x), mul(y, v[2].y)), nearest = min(min(s[0], s[1]), s[2]);
+    num c = add(mul(x, v[2].x), mul(y, v[2].y));
     return sub(r, div(min(min(a, b), c), sqrt(nearest)));
 }
 
@@ -92,7 +96,7 @@ HP_INLINE num HP_NAMED(triangle_cylinder_distance)(const vec3 v[3], vec3 n, num 
 }
 
 HP_INLINE answer HP_NAMED(triangle_cylinder_test)(const num primary[9], const num prepared[15], bits index,
-                                                  bool separation) {
+                                                  bool separation, num bar) {
     HP_NAMED(cylinder) c = HP_NAMED(get_cylinder)(prepared);
     num h = c.h, r = c.r, zero = constant(0);
     vec3 v[3];
@@ -119,7 +123,7 @@ HP_INLINE answer HP_NAMED(triangle_cylinder_test)(const num primary[9], const nu
     }
     vec3 n = HP_NAMED(triangle_cylinder_normal)(t[0].e, sub3(v[2], v[0]));
     depth = min(HP_NAMED(triangle_cylinder_face)(n, v[0], v[2], h, r), depth);
-    UNLESS_ANY(and(sound, at_least(depth, zero))) if (!separation) return miss();
+    UNLESS_ANY(and(sound, could_count(depth, bar))) if (!separation) return miss();
 
     REPEAT(i, 3) depth = min(HP_NAMED(triangle_cylinder_rims)(t[i], h, r, u[i], q[i]), depth);
     flag F = and(sound, at_least(depth, zero));

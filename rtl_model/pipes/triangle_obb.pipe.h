@@ -18,7 +18,7 @@ HP_INLINE void HP_NAMED(triangle_obb_prepare)(const num box[15], num prepared[15
 }
 
 HP_INLINE answer HP_NAMED(triangle_obb_test)(const num triangle[9], const num prepared[15], bits index,
-                                             bool separation) {
+                                             bool separation, num bar) {
     vec3 centre = vec3_of(prepared, 0), u = vec3_of(prepared, 6), v = vec3_of(prepared, 9), w = vec3_of(prepared, 12);
     HP_NAMED(triangle_box) both = {.half = vec3_of(prepared, 3)};
     vec3 corner[3], edge[3];
@@ -34,7 +34,7 @@ HP_INLINE answer HP_NAMED(triangle_obb_test)(const num triangle[9], const num pr
 
     HP_NAMED(triangle_box_overlaps) overlaps = HP_NAMED(triangle_box_shadows)(&both);
     flag F = HP_NAMED(triangle_box_meets)(&both, &overlaps);
-    UNLESS_ANY(F) if (!separation) return miss();
+    UNLESS_ANY(and(F, less(bar, HP_NAMED(triangle_box_bound)(&overlaps)))) if (!separation) return miss();
 
     num T = HP_NAMED(triangle_box_depth)(&both, &overlaps);
     HP_NAMED(triangle_box_near) near = HP_NAMED(triangle_box_nearest)(&both, &overlaps);

@@ -11,7 +11,7 @@ HP_INLINE void HP_NAMED(triangle_sphere_prepare)(const num secondary[4], num pre
 }
 
 HP_INLINE answer HP_NAMED(triangle_sphere_test)(const num primary[9], const num prepared[4], bits index,
-                                                bool separation) {
+                                                bool separation, num bar) {
     vec3 v0 = vec3_of(primary, 0), v1 = vec3_of(primary, 3), v2 = vec3_of(primary, 6), centre = vec3_of(prepared, 0);
     num r = prepared[3], infinity = constant(INFINITY);
 
@@ -21,7 +21,7 @@ HP_INLINE answer HP_NAMED(triangle_sphere_test)(const num primary[9], const num 
     num c = sqrt(near.squared), T = sub(r, c);
     flag legal = and(finite, HP_NAMED(finite)(T));
     flag F = and(legal, at_most(c, r));
-    UNLESS_ANY(F) if (!separation) return miss();
+    UNLESS_ANY(and(F, less(bar, T))) if (!separation) return miss();
 
     vec3 CP = add3(centre, near.point);
     if (!separation) return answer_of(F, index, T, CP);

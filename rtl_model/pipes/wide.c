@@ -2,6 +2,7 @@
  * HP_WIDE_ISA_name is 1; HP_PIPE names the pipe and HP_PIPE_FILE is its text. */
 #include "rtl_model/pipes/wide.h"
 #include "rtl_model/number/environment.h"
+#include "rtl_model/number/one_nan.h"
 #include <math.h>
 #include <string.h>
 

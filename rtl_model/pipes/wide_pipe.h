@@ -60,6 +60,9 @@ HP_INLINE void HP_NAMED(write_pairs)(answer a, size_t n, size_t at, const hp_pai
         HP_NAMED(store)(CP[0], a.CP.x);
         HP_NAMED(store)(CP[1], a.CP.y);
         HP_NAMED(store)(CP[2], a.CP.z);
+        for (size_t i = 0; i < HP_CHUNK; i++) T[i] = hp_one_nan(T[i]);
+        for (unsigned axis = 0; axis < 3; axis++)
+            for (size_t i = 0; i < HP_CHUNK; i++) CP[axis][i] = hp_one_nan(CP[axis][i]);
     }
     memcpy(out->F + at, F, n * sizeof *F);
     memcpy(out->T + at, T, n * sizeof *T);

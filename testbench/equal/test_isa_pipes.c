@@ -173,9 +173,32 @@ static void the_pairs_hit_and_underflow(void **state) {
     assert_true(differ > PAIRS / 400);
 }
 
+/* An illegal box so large that a coordinate of CP is infinity - infinity: processors make that NaN negative. */
+static void a_position_that_is_no_number_is_the_one_nan(void **state) {
+    (void)state;
+    static const float box[15] = {-0x1.b06e34p-53f, -0x1.885bdap-5f,  -0x1.38f486p-90f, 0x1.a809d2p-94f,
+                                  0x1.fc11fep-125f, 0x1.2af206p+96f,  -0x1.04a1ccp+91f, 0x1.0b2442p+51f,
+                                  0x1.0cc4d2p+114f, -0x1.0da8ap+108f, 0x1.1dd174p-32f,  0x1.ffcb5p+13f,
+                                  0x1.b6d36ep-59f,  0x1.a3d94cp+50f,  0x1.7e14f8p+26f};
+    static const float plane[4] = {0x1.f4c8c4p-61f, -0x1.6d076p-39f, 0x1.0a9708p-58f, 0x1.a15fbp-77f};
+    static const uint32_t one_nan = 0x7FC00000;
+    hp_result r = hp_pipe_test(HP_PAIR_OBB_PLANE, HP_GRADUAL, false, box, plane, 0);
+    assert_int_equal(r.F, 1);
+    assert_memory_equal(&r.CP[1], &one_nan, sizeof one_nan);
+    for (unsigned i = 0; hp_isa_name(i); i++) {
+        uint32_t F;
+        float T, CP[3];
+        hp_pairs_out out = {&F, &T, {&CP[0], &CP[1], &CP[2]}};
+        hp_wide_pipe_of(hp_isa_name(i), HP_PAIR_OBB_PLANE)->pairs(box, 1, plane, 1, NULL, false, &out);
+        assert_int_equal(F, 1);
+        assert_memory_equal(&CP[1], &one_nan, sizeof one_nan);
+    }
+}
+
 int main(void) {
     static char names[2 * ALL_PAIRS][64];
-    struct CMUnitTest tests[2 * ALL_PAIRS];
+    struct CMUnitTest tests[2 * ALL_PAIRS + 1] = {[2 * ALL_PAIRS] =
+                                                      cmocka_unit_test(a_position_that_is_no_number_is_the_one_nan)};
     for (unsigned i = 0; i < ALL_PAIRS; i++) {
         strcpy(names[2 * i], hp_pair_name(all_pairs[i]));
         strcat(strcpy(names[2 * i + 1], hp_pair_name(all_pairs[i])), ": the pairs mean something");

@@ -102,8 +102,62 @@ static hpt_flags flags_of(const hpt_sample *s, bool quad) {
     return f;
 }
 
+/* ---- ray against triangle ---- */
+
+static double size(const double a[3]) {
+    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+}
+
+/* kappa, and the lengths of edges, way and direction. */
+typedef struct condition {
+    double kappa, e1, e2, s, d;
+} condition;
+
+static condition condition_of(const hpt_record *r) {
+    const float *o = r->primary, *v = r->secondary;
+    double e1[3], e2[3], s[3], d[3], det = 0;
+    for (int k = 0; k < 3; k++) {
+        d[k] = (double)o[3 + k];
+        s[k] = (double)o[k] - (double)v[k];
+        e1[k] = (double)v[3 + k] - (double)v[k];
+        e2[k] = (double)v[6 + k] - (double)v[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        int l = (k + 1) % 3, m = (k + 2) % 3;
+        det += e1[k] * (d[l] * e2[m] - d[m] * e2[l]);
+    }
+    condition c = {.e1 = size(e1), .e2 = size(e2), .s = size(s), .d = size(d)};
+    c.kappa = c.e1 * c.e2 * c.d / fabs(det);
+    return c;
+}
+
+double hpt_strain_of_T(const hpt_record *r) {
+    double error = hpt_error_of(&r->verdict, HPT_OF_T);
+    if (error <= 0) return 0;
+    condition c = condition_of(r);
+    double length = error * fmax(r->truth.L, r->truth.C) / r->truth.cosine;
+    return length / (0x1p-24 * c.kappa * (c.s + fabs(r->truth.t) * c.d));
+}
+
+double hpt_strain_of_F(const hpt_record *r) {
+    if (r->verdict.right) return 0;
+    condition c = condition_of(r);
+    return r->verdict.margin * r->truth.band / (0x1p-24 * c.kappa * (c.s + c.e1 + c.e2));
+}
+
+static void strain(const hpt_sample *s, hpt_row *row) {
+    if (s->pair != HP_PAIR_RAY_TRIANGLE) return;
+    for (unsigned i = 0; i < s->count; i++) {
+        row->strain_of_T = fmax(row->strain_of_T, hpt_strain_of_T(&s->records[i]));
+        row->strain_of_F = fmax(row->strain_of_F, hpt_strain_of_F(&s->records[i]));
+    }
+}
+
+/* ---- rows ---- */
+
 hpt_row hpt_row_of(const hpt_sample *s) {
     hpt_row row = {.pair = s->pair, .class = s->class, .count = s->count};
+    strain(s, &row);
     for (int quad = 0; quad < 1 + s->quad; quad++) {
         row.flags[quad] = flags_of(s, quad);
         for (int i = 0; i < HPT_FIGURES; i++) row.spread[quad][i] = spread_of(s, (hpt_figure)i, quad);
@@ -122,12 +176,22 @@ static const struct {
     [HPT_OFFSET] = {0, 1e-6, 1e-5},
 };
 
-unsigned hpt_row_over(const hpt_row *row) {
+/* At most `most` in 10,000, and in any fewer. */
+static bool too_many(const hpt_row *row, unsigned wrong, unsigned most) {
     uint64_t count = row->count < 10000 ? 10000 : row->count;
-    unsigned over = (uint64_t)row->flags[0].outside * 10000 > bounds[row->class].wrong * count;
+    return (uint64_t)wrong * 10000 > most * count;
+}
+
+unsigned hpt_row_over(const hpt_row *row, bool quad) {
+    unsigned over = too_many(row, row->flags[quad].outside, bounds[row->class].wrong);
     for (int i = 0; i < HPT_FIGURES; i++) {
-        const hpt_spread *s = &row->spread[0][i];
+        const hpt_spread *s = &row->spread[quad][i];
         if (s->high > bounds[row->class].high || s->worst > bounds[row->class].worst) over |= 2u << i;
     }
     return over;
+}
+
+bool hpt_row_explained(const hpt_row *row) {
+    return row->pair == HP_PAIR_RAY_TRIANGLE && row->class == HPT_DEGENERATE && row->strain_of_T <= HPT_STRAIN &&
+           row->strain_of_F <= HPT_STRAIN && !too_many(row, row->flags[0].outside, 20) && !hpt_row_over(row, true);
 }

@@ -56,11 +56,28 @@ typedef struct hpt_row {
     unsigned count;
     hpt_flags flags[2];
     hpt_spread spread[2][HPT_FIGURES];
+    double strain_of_T, strain_of_F; /* ray-triangle: greatest hpt_strain of T, and of wrong flags */
 } hpt_row;
 
 hpt_row hpt_row_of(const hpt_sample *sample);
 
-/* What is above its bound: bit 0 for flags, bit 1 + figure for the errors. */
-unsigned hpt_row_over(const hpt_row *row);
+/* What is above its bound: bit 0 for flags, bit 1 + figure for the errors. `quad`: of the text in binary128. */
+unsigned hpt_row_over(const hpt_row *row, bool quad);
+
+/* Ray against triangle forms det = e1.(d x e2) as a difference of products of |e1| |e2| |d|. What those are rounded
+ * by is of 2^-24 |e1| |e2| |d|, so u, v and t are uncertain by that over |det|, the condition number kappa: u and v
+ * as shares of the edges, t as a share of the lengths it is made of. The strain is a length in units of this,
+ *
+ *   2^-24 kappa (|s| + |t d|) for t,     2^-24 kappa (|s| + |e1| + |e2|) for the place that a flag depends on,
+ *
+ * s from v0 to the origin. A datapath of the paper's operators that does nothing worse than round has strains of a
+ * few units whatever the triangle, while the errors themselves grow with kappa beyond any bound. */
+double hpt_strain_of_T(const hpt_record *record);
+double hpt_strain_of_F(const hpt_record *record);
+
+/* Whether a row above its bounds is that of the slivers of ray-triangle, with strains of no more than STRAIN units,
+ * at most 20 wrong flags in 10,000, and nothing above any bound in binary128. */
+enum { HPT_STRAIN = 4 };
+bool hpt_row_explained(const hpt_row *row);
 
 #endif

@@ -58,9 +58,11 @@ static void draw_frame(hpt_random *random, double axis[3][3]) {
     make_orthonormal(axis);
 }
 
-/* 2^least to 2^most, even in the exponent. */
+/* 2^least to 2^most, even in the exponent. Two draws never stand in one expression: compilers differ on which is
+ * first. */
 static double draw_power(hpt_random *random, int least, int most) {
-    return ldexp(1 + hpt_random_unit(random), least + (int)hpt_random_below(random, (unsigned)(most - least)));
+    int exponent = least + (int)hpt_random_below(random, (unsigned)(most - least));
+    return ldexp(1 + hpt_random_unit(random), exponent);
 }
 
 /* ---- shapes: every type as half extents in a frame ---- */
@@ -353,7 +355,8 @@ static void draw_offset(hpt_random *random, double by[3]) {
 /* Moves the first, by the oracle's word, to where the two are a small number of bands from touching. */
 static void graze(hpt_random *random, hp_object a, hp_object b, float *first, const float *second) {
     hpt_truth truth = hpt_truth_between(a, b, first, second);
-    double apart = draw_power(random, -5, 10) * truth.band * (hpt_random_below(random, 2) ? 1 : -1), by[3];
+    double by[3], bands = draw_power(random, -5, 10);
+    double apart = bands * truth.band * (hpt_random_below(random, 2) ? 1 : -1);
     for (int k = 0; k < 3; k++) by[k] = -(apart - truth.signed_distance) * truth.direction[k];
     hpt_move_object(a, first, by);
 }

@@ -63,12 +63,20 @@ static void print_row(const hpt_row *row) {
         number(s->n, s->high);
         number(s->n, s->worst);
     }
-    unsigned over = hpt_row_over(row);
+    unsigned over = hpt_row_over(row, false);
     printf(" %u |", f->open);
     for (int i = 0; i < 1 + HPT_FIGURES; i++)
         if (over >> i & 1) printf(" **%s**", names[i]);
-    printf(" |\n");
+    printf(over && hpt_row_explained(row) ? " explained |\n" : " |\n");
     fflush(stdout);
+}
+
+static void print_strains(const hpt_row *rows, unsigned n) {
+    printf("\n| pair | class | greatest strain of t | of a wrong flag |\n|---|---|--:|--:|\n");
+    for (const hpt_row *r = rows; r < rows + n; r++)
+        if (r->pair == HP_PAIR_RAY_TRIANGLE)
+            printf("| %s | %s | %.2g | %.2g |\n", hp_pair_name(r->pair), hpt_class_name(r->class), r->strain_of_T,
+                   r->strain_of_F);
 }
 
 static void print_quad_head(void) {
@@ -230,7 +238,8 @@ int main(int argc, char **argv) {
             if (!is_chosen(&o, pairs[p], class)) continue;
             hpt_sample *sample = hpt_sample_new(pairs[p], (hpt_class) class, o.count, o.quad);
             rows[n] = hpt_row_of(sample);
-            over |= hpt_row_over(&rows[n]);
+            over |= (hpt_row_over(&rows[n], false) && !hpt_row_explained(&rows[n])) ||
+                    (o.quad && hpt_row_over(&rows[n], true));
             if (o.worst)
                 print_all_worst(sample, o.worst);
             else
@@ -238,6 +247,7 @@ int main(int argc, char **argv) {
             hpt_sample_free(sample);
             n++;
         }
+    if (!o.worst) print_strains(rows, n);
     if (o.quad && !o.worst) {
         print_quad_head();
         for (unsigned i = 0; i < n; i++) print_quad_row(&rows[i]);

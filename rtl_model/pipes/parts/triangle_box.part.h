@@ -131,11 +131,16 @@ HP_INLINE flag HP_NAMED(triangle_box_meets)(const HP_NAMED(triangle_box) * both,
     return F;
 }
 
+/* The depth is no greater. */
+HP_INLINE num HP_NAMED(triangle_box_bound)(const HP_NAMED(triangle_box_overlaps) * o) {
+    return min(min(o->face[0], o->face[1]), o->face[2]);
+}
+
 /* The least overlap over the length of its direction. An edge within 2^-35 of an axis has no direction with it: its
  * length is no number, nor is 0/0, and min(NaN, T) is T. */
 HP_INLINE num HP_NAMED(triangle_box_depth)(const HP_NAMED(triangle_box) * both,
                                            const HP_NAMED(triangle_box_overlaps) * o) {
-    num T = min(min(o->face[0], o->face[1]), o->face[2]);
+    num T = HP_NAMED(triangle_box_bound)(o);
     T = min(mul(o->normal, both->per_normal), T);
     for (unsigned i = 0; i < 3; i++) {
         vec3 e = both->edge[i];
