@@ -2,7 +2,7 @@
 pictures: all ## draw the pictures of docs/pipes.md again (the terrain of README: make terrain-picture)
 	@mkdir -p docs/pictures && HITPIPE=$(HITPIPE) testbench/tools/pictures.sh docs/pictures
 
-terrain-picture: all ## trace README's picture again: 134 thousand million tests
+terrain-picture: all ## trace README's picture again: 221 thousand million tests
 	@HITPIPE=$(HITPIPE) testbench/tools/pictures.sh --terrain docs/terrain.png
 
 pipes-page: all ## put what each pipe costs into docs/pipes.md
