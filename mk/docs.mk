@@ -8,4 +8,7 @@ terrain-picture: all ## trace README's picture again: 221 thousand million tests
 pipes-page: all ## put what each pipe costs into docs/pipes.md
 	@HITPIPE=$(HITPIPE) testbench/tools/pipes_page.sh
 
-.PHONY: pictures terrain-picture pipes-page
+experiment: all $(BUILD)/testbench/tools/swarm ## print the tables of docs/experiment.md: the paper's experiments on the simulated board
+	@HITPIPE=$(HITPIPE) BUILD=$(BUILD) testbench/tools/experiment.sh
+
+.PHONY: pictures terrain-picture pipes-page experiment

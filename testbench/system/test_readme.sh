@@ -44,6 +44,10 @@ for link in $(grep -ohE '\]\([a-zA-Z/_.-]*#[a-z0-9-]+\)' README.md CONTRIBUTING.
     [ -e "$page" ] || page=docs/$page
     check "a page links to $link" sh -c "sed -nE 's/^#+ //p' '$page' | tr 'A-Z ' 'a-z-' | tr -cd 'a-z0-9\\n-' | grep -qx -- '$heading'"
 done
+# `make TARGET` in a page is a target
+for target in $(grep -ohE '\`make [a-z][a-z-]*' README.md CONTRIBUTING.md docs/*.md | sed 's/.* //' | sort -u); do
+    check "a page says make $target" grep -qE "^([a-z-]+ )*$target( [a-z-]+)*:" Makefile mk/*.mk
+done
 # every pipe is in the table
 for pair in $(sed -nE 's/^HP_PAIR\(.*"([a-z-]+)".*/\1/p' rtl_model/include/hitpipe/pairs.def); do
     check "README links to $pair" grep -qF "(docs/pipes.md#$pair)" README.md
