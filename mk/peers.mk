@@ -29,3 +29,12 @@ bench-peers:
 	else echo "peers: not compared; make peers installs the packages: $(PACKAGES_PEERS)"; fi
 
 .PHONY: peers bench-peers
+
+# One part alone: PEERS_PART=agreement or PEERS_PART=speed.
+peers-page: $(PEERS) ## measure against the other libraries, and put both tables into docs/peers.md
+	@testbench/tools/peers_page.sh $(PEERS) $(PEERS_COUNT) $(PEERS_ROUNDS) $(PEERS_PART)
+
+test-peers: $(PEERS) ## hold docs/peers.md to the program (where the other libraries are)
+	@BUILD=$(BUILD) testbench/run $(JOBS) testbench/peers/test_peers.sh
+
+.PHONY: peers-page test-peers

@@ -46,6 +46,27 @@ static hp_status gradient(const contact_asking *asking, double step, hp_vector *
     return HP_OK;
 }
 
+static void meet_at(hp_contact *contact, hp_vector on_secondary, double distance) {
+    contact->on_secondary = on_secondary;
+    contact->on_primary = hp_vector_along(on_secondary, distance, contact->out);
+    contact->found = true;
+}
+
+/* A ray that is moved past a triangle's corner need not hit: the corner furthest on the ray's side is the point if
+ * the ray is that far from it. */
+static void touch_corner(const contact_asking *asking, const float *triangle, double size, hp_contact *contact) {
+    const float *ray = asking->primary;
+    hp_vector origin = {ray[0], ray[1], ray[2]}, along = hp_vector_unit((hp_vector){ray[3], ray[4], ray[5]});
+    double distance = apart(asking, &contact->answer);
+    for (int i = 0; i < 3; i++) {
+        hp_vector corner = {triangle[3 * i], triangle[3 * i + 1], triangle[3 * i + 2]};
+        hp_vector foot = hp_vector_along(corner, distance, contact->out), off = hp_vector_sub(foot, origin);
+        double behind = fmax(0, hp_vector_dot(off, along));
+        hp_vector miss = hp_vector_along(off, -behind, along);
+        if (sqrt(hp_vector_dot(miss, miss)) < 1e-2 * fmin(size, distance)) meet_at(contact, corner, distance);
+    }
+}
+
 /* Moves the primary along -out until it is in the secondary by `depth`, and takes the common point. */
 static hp_status touch(const contact_asking *asking, double size, hp_contact *contact) {
     double distance = apart(asking, &contact->answer), depth = 1e-3 * size;
@@ -53,10 +74,9 @@ static hp_status touch(const contact_asking *asking, double size, hp_contact *co
     hp_result touching;
     hp_status status = ask(asking, &by, 1, &touching);
     if (status != HP_OK || !touching.F) return status;
-    if (asking->object != HP_RAY && fabs((double)touching.T - depth) > 0.1 * depth) return HP_OK;
-    contact->on_secondary = (hp_vector){touching.CP[0], touching.CP[1], touching.CP[2]};
-    contact->on_primary = hp_vector_along(contact->on_secondary, distance, contact->out);
-    contact->found = true;
+    /* less deep is right too: a corner past a corner is soon out again another way */
+    if (asking->object != HP_RAY && (double)touching.T > 1.1 * depth) return HP_OK;
+    meet_at(contact, (hp_vector){touching.CP[0], touching.CP[1], touching.CP[2]}, distance);
     return HP_OK;
 }
 
@@ -73,7 +93,10 @@ hp_status hp_contact_find(hp_device *device, hp_pair pair, const float *primary,
         hp_vector slope = {0};
         status = gradient(&asking, step, &slope);
         contact->out = hp_vector_unit(slope);
-        if (status == HP_OK && fabs(hp_vector_dot(slope, slope) - 1) < 0.02) status = touch(&asking, size, contact);
+        bool one_way = status == HP_OK && fabs(hp_vector_dot(slope, slope) - 1) < 0.02;
+        if (one_way) status = touch(&asking, size, contact);
+        if (one_way && !contact->found && pair == HP_PAIR_RAY_TRIANGLE)
+            touch_corner(&asking, secondary, size, contact);
     }
     return status;
 }

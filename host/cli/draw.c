@@ -16,7 +16,7 @@ typedef struct draw_options {
     hp_pair pair;
     const char *typed, *primary, *secondary, *out;
     size_t index[2];
-    double view[2]; /* azimuth, elevation in degrees */
+    double view[2]; /* azimuth, elevation in degrees; NAN: to be chosen */
 } draw_options;
 
 static const struct argp_option option_table[] = {
@@ -25,7 +25,10 @@ static const struct argp_option option_table[] = {
     {"index", KEY_INDEX, "I[,J]", 0, "draw primary I and secondary J, counted from 0 (default 0; J: as I)", 1},
     {"out", KEY_OUT, "X.svg", 0, "the drawing; - is standard output", 1},
     {"view", KEY_VIEW, "AZIMUTH,ELEVATION", 0,
-     "where the viewer stands, in degrees from the x axis towards y, and above both (default -60,24)", 1},
+     "where the viewer stands, in degrees from the x axis towards y, and above both (default: about -60,24, so that "
+     "T "
+     "and thin things are not seen end on)",
+     1},
     {0},
 };
 
@@ -97,16 +100,15 @@ static const struct argp argp = {
 
 /* ---- the picture ---- */
 
-/* The two objects to be drawn. */
+/* The two objects to be drawn: primary and secondary. */
 typedef struct draw_scene {
-    hp_object object[2];
-    const float *words[2];
+    hp_figure figure[2];
     hp_vector middle[2];
     double size[2]; /* diagonals of the boxes around them */
 } draw_scene;
 
 static void measure(draw_scene *scene, int i) {
-    hp_bounds box = hp_shape_bounds(scene->object[i], scene->words[i]);
+    hp_bounds box = hp_shape_bounds(scene->figure[i].object, scene->figure[i].words);
     hp_vector low = hp_vector_of(box.low), diagonal = hp_vector_sub(hp_vector_of(box.high), low);
     scene->middle[i] = hp_vector_along(low, 0.5, diagonal);
     scene->size[i] = sqrt(hp_vector_dot(diagonal, diagonal));
@@ -119,67 +121,134 @@ static double small_size(const draw_scene *scene) {
     return least > 1e-3 * most ? least : most > 0 ? most : apart > 0 ? apart : 1;
 }
 
-/* How much of a ray or a plane is shown: a ray to a little past its hit or the object. */
-static double reach_of(const draw_scene *scene, const hp_result *answer) {
-    if (scene->object[1] == HP_PLANE) return 0.85 * scene->size[0];
-    const float *d = scene->words[0] + 3;
-    if (scene->object[0] != HP_RAY) return 0;
-    hp_vector to = hp_vector_sub(scene->middle[1], scene->middle[0]);
-    if (!answer->F) return sqrt(hp_vector_dot(to, to)) + 0.6 * scene->size[1];
-    double length = sqrt((double)d[0] * d[0] + (double)d[1] * d[1] + (double)d[2] * d[2]);
-    return (double)answer->T * length + 0.6 * scene->size[1];
+static bool is_ray(const draw_scene *scene) {
+    return scene->figure[0].object == HP_RAY;
 }
 
-static void draw_answer(hp_drawing *drawing, const draw_scene *scene, const hp_contact *contact, double reach) {
+/* How much of a ray or a plane is shown: a ray to a little past its hit or the object. */
+static double reach_of(const draw_scene *scene, const hp_result *answer) {
+    if (scene->figure[1].object == HP_PLANE) return 0.6 * scene->size[0];
+    const float *d = scene->figure[0].words + 3;
+    if (!is_ray(scene)) return 0;
+    hp_vector to = hp_vector_sub(scene->middle[1], scene->middle[0]);
+    if (!answer->F) return sqrt(hp_vector_dot(to, to)) + 0.8 * scene->size[1];
+    double length = sqrt((double)d[0] * d[0] + (double)d[1] * d[1] + (double)d[2] * d[2]);
+    return (double)answer->T * length + 0.8 * scene->size[1];
+}
+
+/* The ends of T: of a ray that hits from its origin to CP, else the points that are T apart. False: no direction. */
+static bool measure_ends(const draw_scene *scene, const hp_contact *contact, hp_vector ends[2]) {
     const hp_result *answer = &contact->answer;
-    const hp_vector cp = {answer->CP[0], answer->CP[1], answer->CP[2]};
-    if (contact->found && answer->F) {
-        float moved[HP_OBJECT_WORDS_MAX];
-        hp_shape_move(scene->object[0], scene->words[0], hp_vector_sub(contact->on_secondary, contact->on_primary),
-                      moved);
-        hp_wireframe(drawing, HP_INK_GHOST, scene->object[0], moved, scene->middle[0], reach);
+    bool ray_hit = answer->F && is_ray(scene);
+    ends[0] = ray_hit ? scene->middle[0] : contact->on_primary;
+    ends[1] = ray_hit ? (hp_vector){answer->CP[0], answer->CP[1], answer->CP[2]} : contact->on_secondary;
+    return ray_hit || contact->found;
+}
+
+/* ---- where the viewer stands ---- */
+
+/* How well a view shows an object's shape, up to 1: a thin one not edge on, a cylinder neither as a disc nor as a
+ * rectangle. What is enough is no worse than more. */
+static double clearness(const hp_figure *figure, hp_vector toward) {
+    double normal[3] = {figure->words[0], figure->words[1], figure->words[2]}; /* a plane's */
+    if (figure->object == HP_TRIANGLE) hp_shape_normal(figure->object, figure->words, figure->words, normal);
+    if (figure->object == HP_CYLINDER)
+        for (int i = 0; i < 3; i++) normal[i] = (double)figure->words[3 + i] - (double)figure->words[i];
+    double cosine = fabs(hp_vector_dot(hp_vector_unit(hp_vector_of(normal)), toward));
+    if (figure->object == HP_CYLINDER) return fmin(1, fmin(cosine / 0.25, (1 - cosine) / 0.2));
+    return figure->object == HP_TRIANGLE || figure->object == HP_PLANE ? fmin(1, cosine / 0.45) : 1;
+}
+
+/* How much a view shows, up to 1: T too should not be seen end on. */
+static double worth(const draw_scene *scene, bool barred, const hp_vector ends[2], hp_vector toward) {
+    hp_vector along = hp_vector_unit(hp_vector_sub(ends[1], ends[0]));
+    double cosine = hp_vector_dot(along, toward), shown = 1;
+    if (barred) shown = fmin(1, sqrt(fmax(0, 1 - cosine * cosine)) / 0.9);
+    for (int i = 0; i < 2; i++) shown = fmin(shown, clearness(&scene->figure[i], toward));
+    return shown;
+}
+
+static hp_drawing best_view(const draw_options *draw, const draw_scene *scene, bool barred, const hp_vector ends[2]) {
+    if (!isnan(draw->view[0])) return hp_drawing_begin(draw->view[0], draw->view[1]);
+    hp_drawing best = hp_drawing_begin(-60, 24);
+    double most = worth(scene, barred, ends, best.toward);
+    for (int turn = 15; turn <= 180; turn += 15) /* from the usual place to either side */
+        for (int side = -1; side <= 1; side += 2) {
+            hp_drawing other = hp_drawing_begin(-60 + side * turn, 24);
+            double shown = worth(scene, barred, ends, other.toward);
+            if (shown <= most + 0.02) continue;
+            most = shown;
+            best = other;
+        }
+    return best;
+}
+
+static void draw_objects(hp_drawing *drawing, const draw_scene *scene) {
+    static const hp_ink inks[] = {HP_INK_PRIMARY, HP_INK_SECONDARY};
+    for (int i = 1; i >= 0; i--) {
+        drawing->cover = &scene->figure[1 - i];
+        hp_wireframe(drawing, inks[i], &scene->figure[i]);
     }
-    hp_vector ends[] = {contact->on_primary, contact->on_secondary};
-    if (answer->F && scene->object[0] == HP_RAY) ends[0] = scene->middle[0], ends[1] = cp;
-    if (contact->found || (answer->F && scene->object[0] == HP_RAY))
-        hp_drawing_line(drawing, HP_INK_MEASURE, HP_PEN_FRONT, ends, 2, false);
-    if (answer->F) hp_drawing_dot(drawing, HP_INK_MEASURE, cp, "CP");
+    drawing->cover = NULL;
+    hp_drawing_meeting(drawing, &scene->figure[0], &scene->figure[1]);
+}
+
+/* The primary moved by T: it touches. */
+static void draw_ghost(hp_drawing *drawing, const draw_scene *scene, const hp_contact *contact) {
+    float moved[HP_OBJECT_WORDS_MAX];
+    hp_figure ghost = scene->figure[0];
+    hp_shape_move(ghost.object, ghost.words, hp_vector_sub(contact->on_secondary, contact->on_primary), moved);
+    ghost.words = moved;
+    drawing->cover = &scene->figure[1];
+    hp_wireframe(drawing, HP_INK_GHOST, &ghost);
+    drawing->cover = NULL;
 }
 
 /* The caption's words, which it points into. */
 typedef struct draw_words {
-    char pair[160], answer[200], objects[2][80], measure[64];
+    char answer[160], point[120], objects[2][48], measure[64];
 } draw_words;
 
-static hp_caption caption_of(const draw_options *draw, const hp_result *answer, draw_words *words) {
-    bool ray = hp_pair_primary(draw->pair) == HP_RAY, shown = isfinite(answer->T) && !(ray && answer->F);
-    const char *meaning = !answer->F ? "distance" : ray ? "lengths of the direction" : "penetration depth";
-    snprintf(words->pair, sizeof words->pair, "%s: %s", draw->typed, answer->F ? "F 1, a hit" : "F 0, a miss");
-    int n = snprintf(words->answer, sizeof words->answer, "T %.6g (%s)", (double)answer->T, meaning);
-    if (answer->F)
-        snprintf(words->answer + n, sizeof words->answer - (size_t)n, ", CP %.6g, %.6g, %.6g", (double)answer->CP[0],
-                 (double)answer->CP[1], (double)answer->CP[2]);
-    snprintf(words->objects[0], sizeof words->objects[0], "%s %zu (primary)",
-             hp_object_name(hp_pair_primary(draw->pair)), draw->index[0]);
-    snprintf(words->objects[1], sizeof words->objects[1], "%s %zu (secondary)",
-             hp_object_name(hp_pair_secondary(draw->pair)), draw->index[1]);
+static hp_caption caption_of(const draw_options *draw, const hp_contact *contact, draw_words *words) {
+    const hp_result *answer = &contact->answer;
+    const hp_object objects[] = {hp_pair_primary(draw->pair), hp_pair_secondary(draw->pair)};
+    static const char *const roles[] = {"primary", "secondary"};
+    bool ray_hit = objects[0] == HP_RAY && answer->F, shown = isfinite(answer->T) && !ray_hit;
+    const char *meaning = !answer->F ? "distance" : ray_hit ? "lengths of the direction" : "penetration depth";
+    snprintf(words->answer, sizeof words->answer, "%s: F %d, T %.6g (%s%s)", draw->typed, (int)answer->F,
+             (double)answer->T, meaning, ray_hit || contact->found ? "" : " in no single direction");
+    snprintf(words->point, sizeof words->point, "CP %.6g, %.6g, %.6g", (double)answer->CP[0], (double)answer->CP[1],
+             (double)answer->CP[2]);
+    for (int i = 0; i < 2; i++)
+        snprintf(words->objects[i], sizeof words->objects[i], "%s %zu, %s", hp_object_name(objects[i]),
+                 draw->index[i], roles[i]);
     snprintf(words->measure, sizeof words->measure, "T %.6g", (double)answer->T);
-    return (hp_caption){{words->pair, words->answer},
+    return (hp_caption){{words->answer, answer->F ? words->point : NULL},
                         words->objects[0],
                         words->objects[1],
+                        answer->F && contact->found ? "moved by T" : NULL,
                         shown ? words->measure : NULL,
                         shown ? (double)answer->T : 0};
 }
 
-static hp_status draw_picture(const draw_options *draw, const draw_scene *scene, const hp_contact *contact,
+static hp_status draw_picture(const draw_options *draw, draw_scene *scene, const hp_contact *contact,
                               hp_fault *fault) {
+    const hp_result *answer = &contact->answer;
     draw_words words;
-    hp_caption caption = caption_of(draw, &contact->answer, &words);
-    hp_drawing drawing = hp_drawing_begin(draw->view[0], draw->view[1]);
-    double reach = reach_of(scene, &contact->answer);
-    hp_wireframe(&drawing, HP_INK_SECONDARY, scene->object[1], scene->words[1], scene->middle[0], reach);
-    hp_wireframe(&drawing, HP_INK_PRIMARY, scene->object[0], scene->words[0], scene->middle[1], reach);
-    draw_answer(&drawing, scene, contact, reach);
+    hp_caption caption = caption_of(draw, contact, &words);
+    hp_vector ends[2];
+    bool barred = measure_ends(scene, contact, ends);
+    hp_drawing drawing = best_view(draw, scene, barred, ends);
+    drawing.slack = 3e-3 * small_size(scene);
+    for (int i = 0; i < 2; i++) {
+        scene->figure[i].around = scene->middle[1 - i];
+        scene->figure[i].reach = reach_of(scene, answer);
+    }
+    draw_objects(&drawing, scene);
+    if (answer->F && contact->found) draw_ghost(&drawing, scene, contact);
+    if (barred) hp_drawing_bar(&drawing, HP_INK_MEASURE, ends, "T");
+    if (answer->F)
+        hp_drawing_dot(&drawing, HP_INK_MEASURE, (hp_vector){answer->CP[0], answer->CP[1], answer->CP[2]}, "CP");
     hp_status status = hp_drawing_write(&drawing, &caption, draw->out, fault);
     hp_drawing_free(&drawing);
     return status;
@@ -218,13 +287,14 @@ static hp_status write_report(const draw_options *draw, hp_device *device, const
     return status;
 }
 
-static hp_status draw_on_board(draw_options *draw, const draw_scene *scene, hp_fault *fault) {
+static hp_status draw_on_board(draw_options *draw, draw_scene *scene, hp_fault *fault) {
     hp_device *device;
     hp_contact contact;
     hp_status status = hp_cli_open(&draw->cli, &device, fault), closed;
     if (status == HP_OK) status = hp_cli_check_resident(device, draw->pair, fault);
     if (status == HP_OK) {
-        status = hp_contact_find(device, draw->pair, scene->words[0], scene->words[1], small_size(scene), &contact);
+        status = hp_contact_find(device, draw->pair, scene->figure[0].words, scene->figure[1].words,
+                                 small_size(scene), &contact);
         if (status != HP_OK) hp_cli_device_fault(device, status, NULL, fault);
     }
     if (status == HP_OK) status = draw_picture(draw, scene, &contact, fault);
@@ -243,17 +313,18 @@ static hp_status pick(const char *path, const hp_objects *objects, size_t index,
 }
 
 int hp_verb_draw(int argc, char **argv) {
-    draw_options draw = {.cli = hp_cli_begin(argv[0]), .view = {-60, 24}};
+    draw_options draw = {.cli = hp_cli_begin(argv[0]), .view = {NAN, NAN}};
     argp_parse(&argp, argc, argv, 0, NULL, &draw);
     hp_fault fault = {0};
-    draw_scene scene = {.object = {hp_pair_primary(draw.pair), hp_pair_secondary(draw.pair)}};
+    draw_scene scene = {.figure = {{.object = hp_pair_primary(draw.pair)}, {.object = hp_pair_secondary(draw.pair)}}};
     const char *paths[] = {draw.primary, draw.secondary};
     hp_objects objects[2] = {{0}, {0}};
     hp_status status = HP_OK;
     for (int i = 0; i < 2 && status == HP_OK; i++) {
-        status = hp_csv_load(paths[i], scene.object[i], &objects[i], &fault);
+        status = hp_csv_load(paths[i], scene.figure[i].object, &objects[i], &fault);
         if (status == HP_OK)
-            status = pick(paths[i], &objects[i], draw.index[i], scene.object[i], &scene.words[i], &fault);
+            status =
+                pick(paths[i], &objects[i], draw.index[i], scene.figure[i].object, &scene.figure[i].words, &fault);
         if (status == HP_OK) measure(&scene, i);
     }
     if (status == HP_OK) status = draw_on_board(&draw, &scene, &fault);

@@ -13,13 +13,6 @@ static hp_vector place(hp_vector a, double s, hp_vector u, double t, hp_vector v
     return hp_vector_along(hp_vector_along(a, s, u), t, v);
 }
 
-/* Two unit vectors at right angles to a unit vector and to each other. */
-static void across(hp_vector axis, hp_vector *u, hp_vector *v) {
-    hp_vector other = fabs(axis.z) < 0.9 ? (hp_vector){0, 0, 1} : (hp_vector){1, 0, 0};
-    *u = hp_vector_unit(hp_vector_cross(other, axis));
-    *v = hp_vector_cross(axis, *u);
-}
-
 static void circle(hp_vector centre, hp_vector u, hp_vector v, double radius, hp_vector points[TURN]) {
     for (int i = 0; i < TURN; i++)
         points[i] = place(centre, radius * hp_cosine(i * STEP), u, radius * hp_sine(i * STEP), v);
@@ -105,7 +98,7 @@ static void draw_cylinder(hp_drawing *drawing, hp_ink ink, const float *words) {
     hp_vector p[] = {vector_at(words), vector_at(words + 3)}, u, v, rims[2 * TURN];
     hp_vector axis = hp_vector_unit(hp_vector_sub(p[1], p[0]));
     double radius = words[6], facing = hp_vector_dot(axis, drawing->toward);
-    across(axis, &u, &v);
+    hp_figure_across(axis, &u, &v);
     for (int cap = 0; cap < 2; cap++) circle(p[cap], u, v, radius, rims + cap * TURN);
     hp_drawing_outline(drawing, ink, HP_PEN_FILL, rims, 2 * TURN);
     for (int cap = 0; cap < 2; cap++) {
@@ -121,51 +114,51 @@ static void draw_cylinder(hp_drawing *drawing, hp_ink ink, const float *words) {
                 hp_vector_along(p[1], sign * radius, side));
 }
 
-static void draw_plane(hp_drawing *drawing, hp_ink ink, const float *words, hp_vector around, double reach) {
+static void draw_plane(hp_drawing *drawing, hp_ink ink, const hp_figure *plane) {
     enum { CELLS = 6 };
-    hp_vector n = vector_at(words), u, v;
-    double above = (hp_vector_dot(n, around) - (double)words[3]) / hp_vector_dot(n, n);
-    hp_vector foot = hp_vector_along(around, -above, n), corners[4];
-    across(hp_vector_unit(n), &u, &v);
+    hp_patch patch = hp_figure_patch(plane);
+    double reach = plane->reach;
+    hp_vector foot = patch.middle, u = patch.u, v = patch.v, corners[4];
     for (int i = 0; i < 4; i++)
         corners[i] = place(foot, i == 1 || i == 2 ? reach : -reach, u, i >= 2 ? reach : -reach, v);
     hp_drawing_line(drawing, ink, HP_PEN_FILL, corners, 4, true);
-    for (int i = 0; i <= CELLS; i++) {
+    hp_drawing_line(drawing, ink, HP_PEN_FRONT, corners, 4, true);
+    for (int i = 1; i < CELLS; i++) {
         double at = reach * (2.0 * i / CELLS - 1);
-        hp_pen pen = i == 0 || i == CELLS ? HP_PEN_FRONT : HP_PEN_BACK;
-        segment(drawing, ink, pen, place(foot, at, u, -reach, v), place(foot, at, u, reach, v));
-        segment(drawing, ink, pen, place(foot, -reach, u, at, v), place(foot, reach, u, at, v));
+        segment(drawing, ink, HP_PEN_BACK, place(foot, at, u, -reach, v), place(foot, at, u, reach, v));
+        segment(drawing, ink, HP_PEN_BACK, place(foot, -reach, u, at, v), place(foot, reach, u, at, v));
     }
 }
 
-static void draw_ray(hp_drawing *drawing, hp_ink ink, const float *words, double reach) {
-    hp_vector origin = vector_at(words);
-    segment(drawing, ink, HP_PEN_ARROW, origin, hp_vector_along(origin, reach, hp_vector_unit(vector_at(words + 3))));
+static void draw_ray(hp_drawing *drawing, hp_ink ink, const hp_figure *ray) {
+    hp_vector origin = vector_at(ray->words), along = hp_vector_unit(vector_at(ray->words + 3));
+    hp_vector end = hp_vector_along(origin, ray->reach, along);
+    segment(drawing, ink, HP_PEN_FRONT, origin, end);
+    segment(drawing, ink, HP_PEN_HEAD, origin, end);
 }
 
-void hp_wireframe(hp_drawing *drawing, hp_ink ink, hp_object object, const float *words, hp_vector around,
-                  double reach) {
-    switch (object) {
+void hp_wireframe(hp_drawing *drawing, hp_ink ink, const hp_figure *figure) {
+    switch (figure->object) {
     case HP_RAY:
-        draw_ray(drawing, ink, words, reach);
+        draw_ray(drawing, ink, figure);
         return;
     case HP_TRIANGLE:
-        draw_triangle(drawing, ink, words);
+        draw_triangle(drawing, ink, figure->words);
         return;
     case HP_SPHERE:
-        draw_sphere(drawing, ink, words);
+        draw_sphere(drawing, ink, figure->words);
         return;
     case HP_AABB:
-        draw_aabb(drawing, ink, words);
+        draw_aabb(drawing, ink, figure->words);
         return;
     case HP_OBB:
-        draw_obb(drawing, ink, words);
+        draw_obb(drawing, ink, figure->words);
         return;
     case HP_CYLINDER:
-        draw_cylinder(drawing, ink, words);
+        draw_cylinder(drawing, ink, figure->words);
         return;
     case HP_PLANE:
-        draw_plane(drawing, ink, words, around, reach);
+        draw_plane(drawing, ink, figure);
         return;
     }
 }

@@ -24,30 +24,45 @@ static const hp_pair all_pairs[] = {
 };
 enum { PAIRS = sizeof all_pairs / sizeof *all_pairs };
 
+/* What this program prints: the number after its option, which is from 1 to `most`. */
+typedef struct peers_table {
+    const char *name, *option;
+    unsigned number, most;
+    void (*print)(const hp_pair *pairs, unsigned n, unsigned number);
+} peers_table;
+
+static const peers_table tables[] = {
+    {"agreement", "--count", 10000, 10000000, peers_print_agreement},
+    {"summary", "--count", 10000, 10000000, peers_print_summary},
+    {"speed", "--rounds", 9, 99, peers_print_speed},
+};
+
 static int usage(void) {
-    fputs("usage: peers agreement [--count N] [PAIR...]\n"
+    fputs("usage: peers agreement|summary [--count N] [PAIR...]\n"
           "       peers speed [--rounds N] [PAIR...]\n",
           stderr);
     return 2;
 }
 
+static const peers_table *table_named(const char *name) {
+    for (size_t i = 0; name && i < sizeof tables / sizeof *tables; i++)
+        if (strcmp(tables[i].name, name) == 0) return &tables[i];
+    return NULL;
+}
+
 int main(int argc, char **argv) {
-    if (argc < 2) return usage();
-    bool speed = strcmp(argv[1], "speed") == 0;
-    if (!speed && strcmp(argv[1], "agreement") != 0) return usage();
+    const peers_table *table = table_named(argv[1]);
+    if (!table) return usage();
     hp_pair pairs[PAIRS];
-    unsigned n = 0, number = speed ? 9 : 10000;
+    unsigned n = 0, number = table->number;
     for (int i = 2; i < argc; i++) {
-        if (strcmp(argv[i], speed ? "--rounds" : "--count") == 0 && i + 1 < argc) {
+        if (strcmp(argv[i], table->option) == 0 && i + 1 < argc) {
             number = (unsigned)strtoul(argv[++i], NULL, 10);
-            if (number < 1 || (speed && number > 99)) return usage();
+            if (number < 1 || number > table->most) return usage();
         } else if (n == PAIRS || !(pairs[n++] = hp_pair_from_name(argv[i])))
             return usage();
     }
     if (n == 0) memcpy(pairs, all_pairs, sizeof pairs), n = PAIRS;
-    if (speed)
-        peers_print_speed(pairs, n, number);
-    else
-        peers_print_agreement(pairs, n, number);
+    table->print(pairs, n, number);
     return 0;
 }

@@ -11,5 +11,6 @@ void peers_of(hp_pair pair, peers_visitor *with, void *context);
 /* The pairs asked for, `pairs` of them. */
 void peers_print_speed(const hp_pair *pairs, unsigned n, unsigned rounds);
 void peers_print_agreement(const hp_pair *pairs, unsigned n, unsigned count);
+void peers_print_summary(const hp_pair *pairs, unsigned n, unsigned count);
 
 #endif

@@ -23,7 +23,7 @@ status 2 "unknown verb" "$h" trase
 says "unknown verb" "no verb 'trase'; did you mean 'trace'"
 status 2 "unknown option" "$h" --verbose
 says "unknown option" "no option '--verbose'"
-for verb in info trace query replay; do
+for verb in info trace query draw replay; do
     status 0 "$verb --help" "$h" $verb --help
     says "$verb --help" "Usage: hitpipe $verb"
     status 2 "$verb --nonsense" "$h" $verb --nonsense
@@ -155,6 +155,36 @@ for key in clocks.total stalls.idle bytes.to_board bytes.to_host tests.run tests
 done
 says "report: tests run" '"run": 9,'
 for key in board engine target isa; do says "report: $key" "\"$key\": \"[a-z0-9]+\""; done
+
+# ---- draw ----
+d() { "$h" draw "$@" --out "$work/d.svg"; }
+object() { echo "examples/objects/$1.csv"; }
+for pair in $pairs; do
+    primary=$(object "${pair%-*}") secondary=$(object "${pair#*-}")
+    status 0 "draw $pair, a hit" d "$pair" -p "$primary" -s "$secondary" -i 1,0 --json
+    says "$pair: F" '"F": 1'
+    output=$(cat "$work/d.svg")
+    says "$pair: a bar for T" 'class="measure bar"'
+    says "$pair: CP" '>CP</text>'
+    says "$pair: in words" ">$pair: F 1, T [0-9.]+ \\((penetration depth|lengths of the direction)\\)<"
+    status 0 "draw $pair, a miss" d "$pair" -p "$primary" -s "$secondary" -i 2,0 --json
+    says "$pair: F" '"F": 0'
+    says "$pair: the nearest points" '"on_secondary": \['
+    check "$pair: no CP" sh -c "! grep -q '>CP<' '$work/d.svg'"
+    check "$pair: the distance in words" grep -q ">$pair: F 0, T [0-9.]* (distance)<" "$work/d.svg"
+done
+status 0 "concentric balls" d sphere-sphere -p "$(object sphere)" -s "$(object sphere)"
+check "no single direction" grep -q 'penetration depth in no single direction' "$work/d.svg"
+status 2 "draw without files" d sphere-obb
+says "draw without files" '--primary and --secondary are needed'
+status 2 "draw to nowhere" "$h" draw sphere-obb -p a -s b
+says "draw to nowhere" '--out is needed'
+status 2 "draw of no number" d sphere-obb -p a -s b -i one
+says "draw of no number" "--index takes I or I,J, counted from 0, not 'one'"
+for view in 30 30,91 361,0 a,b nan,0; do status 2 "a view from $view" d sphere-obb -p a -s b "--view=$view"; done
+status 3 "draw what is not there" d sphere-obb -p "$(object sphere)" -s "$(object obb)" -i 7
+says "draw what is not there" 'sphere\.csv: there is no sphere 7: the file has 3, counted from 0'
+status 4 "draw without the pipe" d obb-obb -p "$(object obb)" -s "$(object obb)" --board "$work/two.json"
 
 # ---- bad input ----
 bad_rays() { # NAME WORDS LINE...: exit 3 with the words

@@ -1,7 +1,7 @@
 #!/bin/sh
-# The paper's first two experiments on the simulated board, as the table of docs/experiment.md. Run from the project's root.
+# The paper's three experiments on the simulated board, as the tables of docs/experiment.md. Run from the project's root.
 set -eu
-: "${HITPIPE:=build/hitpipe}"
+: "${HITPIPE:=build/hitpipe}" "${BUILD:=build}"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 printf '{"preset": "wscg2007", "name": "PCI at half its peak", "link": {"to_board_bytes_per_second": 264000000,
@@ -30,3 +30,21 @@ row 'static, mode `all`, PCI at half its peak' "$work/half.json" --mode all
 row 'moving, mode `all`, PCI at half its peak' "$work/half.json" --mode all --moving
 row 'static, mode `closest`, `usb3`' usb3 --mode closest
 row 'static, mode `closest`, `ideal`' ideal --mode closest
+
+# swarm NAME BOARD WAY: the third, by testbench/tools/swarm.c
+swarm() {
+    # shellcheck disable=SC2046,SC2183  # its five numbers are five words
+    printf '| %s | %s | %s | %s | %s | %s |\n' "$1" $("$BUILD/testbench/tools/swarm" "$2" "$3")
+}
+
+echo
+echo '| 1,000 moving spheres, ms of board time a frame | upload | compute | read-back | sum | collisions found |'
+echo '|---|---|---|---|---|---|'
+swarm 'all against all, mode `all`, `wscg2007`' wscg2007 all
+swarm 'each pair once, mode `all`, `wscg2007`' wscg2007 once
+swarm 'all against all, mode `any`, `wscg2007`' wscg2007 any
+swarm 'all against all, mode `all`, PCI at half its peak' "$work/half.json" all
+swarm 'each pair once, mode `all`, PCI at half its peak' "$work/half.json" once
+swarm 'all against all, mode `all`, `usb3`' usb3 all
+swarm 'each pair once, mode `all`, `usb3`' usb3 once
+swarm 'all against all, mode `all`, `ideal`' ideal all

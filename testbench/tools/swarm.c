@@ -1,8 +1,14 @@
 /* The paper's third experiment on the simulated board: a thousand spheres move in every frame, and each is tested
- * against all of them. swarm BOARD MODE [FRAMES]: prints milliseconds of board time a frame, mean of the frames, as
- * upload, compute, read-back and sum, and the pairs that collide (no sphere with itself, each pair once).
+ * against all of them. swarm BOARD any|all|once [FRAMES]: prints milliseconds of board time a frame, mean of the
+ * frames, as upload, compute, read-back and sum, and the pairs that collide (no sphere with itself, each pair once;
+ * any: the spheres that collide with one before).
+ *
+ * all: a record for each of the million pairs. once: a packet of primaries only against the secondaries from its own
+ * first sphere on, so that each pair is tested and sent at least once. any: one record a sphere, its first collision;
+ * a sphere that collides with none before it finds itself.
  *
  * In every frame the spheres are uploaded anew and sent as primaries too: nothing of the frame before is kept. */
+#include "host/import/board_json.h"
 #include "testbench/support/random.h"
 #include <hitpipe/hitpipe.h>
 #include <stdio.h>
@@ -40,31 +46,55 @@ static void move(swarm *s) {
         }
 }
 
+typedef struct counting {
+    uint64_t hits;
+    uint32_t from; /* the sphere that is primary 0 */
+} counting;
+
 static bool count_hits(void *context, const uint32_t *primary, const uint32_t *secondary, const hp_result *records,
                        size_t count) {
-    uint64_t *hits = context;
-    for (size_t i = 0; i < count; i++) *hits += records[i].F && primary[i] < secondary[i];
+    counting *c = context;
+    for (size_t i = 0; i < count; i++) c->hits += records[i].F && c->from + primary[i] < secondary[i];
     return true;
 }
 
-static hp_status frame(hp_device *device, hp_mode mode, const swarm *s, uint64_t *hits) {
+/* A packet after another against the spheres from its first on. */
+static hp_status ask_once(hp_device *device, hp_query_def *def, const swarm *s, counting *c) {
+    uint32_t packet = hp_identify(device)->packet_primaries;
+    for (c->from = 0; c->from < SPHERES; c->from += packet) {
+        uint32_t n = SPHERES - c->from < packet ? SPHERES - c->from : packet;
+        def->first = c->from;
+        hp_status status = hp_query_all(device, def, s->words + c->from * HP_SPHERE_WORDS, n, count_hits, c);
+        if (status) return status;
+    }
+    return HP_OK;
+}
+
+static hp_status ask_any(hp_device *device, const hp_query_def *def, const swarm *s, counting *c) {
     hp_result results[SPHERES];
+    hp_status status = hp_query(device, def, s->words, SPHERES, results);
+    for (uint32_t i = 0; i < SPHERES && !status; i++) c->hits += results[i].index < i;
+    return status;
+}
+
+static hp_status frame(hp_device *device, const char *way, const swarm *s, counting *c) {
     hp_query_def def = hp_default_query_def();
     def.pair = HP_PAIR_SPHERE_SPHERE;
-    def.mode = mode;
+    def.mode = strcmp(way, "any") == 0 ? HP_MODE_ANY : HP_MODE_ALL;
     def.separation = HP_SEPARATION_OFF;
     hp_status status = hp_upload(device, HP_SPHERE, s->words, SPHERES);
     if (status) return status;
-    if (mode == HP_MODE_ALL) return hp_query_all(device, &def, s->words, SPHERES, count_hits, hits);
-    return hp_query(device, &def, s->words, SPHERES, results);
+    if (def.mode == HP_MODE_ANY) return ask_any(device, &def, s, c);
+    if (strcmp(way, "once") == 0) return ask_once(device, &def, s, c);
+    return hp_query_all(device, &def, s->words, SPHERES, count_hits, c);
 }
 
 /* Board time of one frame, less what reading the counters costs, is added to *sum. */
-static hp_status timed_frame(hp_device *device, hp_mode mode, const swarm *s, hp_counters *sum, uint64_t *hits) {
+static hp_status timed_frame(hp_device *device, const char *way, const swarm *s, hp_counters *sum, counting *c) {
     hp_counters reading, counters;
     hp_status status = hp_read_counters(device, true, &counters);
     if (!status) status = hp_read_counters(device, true, &reading);
-    if (!status) status = frame(device, mode, s, hits);
+    if (!status) status = frame(device, way, s, c);
     if (!status) status = hp_read_counters(device, true, &counters);
     sum->phase_upload += counters.phase_upload - reading.phase_upload;
     sum->phase_compute += counters.phase_compute - reading.phase_compute;
@@ -77,16 +107,21 @@ int main(int argc, char **argv) {
     hp_device_def def = hp_default_device_def();
     hp_device *device = NULL;
     hp_counters sum = {0};
-    uint64_t hits = 0;
+    counting c = {0, 0};
     unsigned frames = argc > 3 ? (unsigned)strtoul(argv[3], NULL, 10) : FRAMES;
-    hp_mode mode = argc > 2 ? hp_mode_from_name(argv[2]) : 0;
-    hp_status status = argc > 1 ? hp_config_preset(&def.board, argv[1]) : HP_ERROR_USAGE;
-    if (status || !mode || !frames) return 2;
-    status = hp_open(&def, &device);
+    const char *way = argc > 2 ? argv[2] : "";
+    bool known = strcmp(way, "any") == 0 || strcmp(way, "all") == 0 || strcmp(way, "once") == 0;
+    hp_fault fault;
+    if (!known || !frames) return hp_status_exit(HP_ERROR_USAGE);
+    if (hp_board_load(argv[1], &def.board, &fault) != HP_OK) {
+        fprintf(stderr, "swarm: %s\n", fault.message);
+        return hp_status_exit(fault.status);
+    }
+    hp_status status = hp_open(&def, &device);
     draw(&s);
     for (unsigned i = 0; i < frames && !status; i++) {
         move(&s);
-        status = timed_frame(device, mode, &s, &sum, &hits);
+        status = timed_frame(device, way, &s, &sum, &c);
     }
     if (status) {
         fprintf(stderr, "swarm: %s: %s\n", hp_status_text(status), hp_error_message(device));
@@ -96,7 +131,7 @@ int main(int argc, char **argv) {
     double upload = ms * (double)sum.phase_upload, compute = ms * (double)sum.phase_compute,
            read_back = ms * (double)sum.phase_read_back;
     printf("%.3f %.3f %.3f %.3f %.0f\n", upload, compute, read_back, upload + compute + read_back,
-           (double)hits / frames);
+           (double)c.hits / frames);
     hp_close(device);
     return 0;
 }
