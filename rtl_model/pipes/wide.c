@@ -19,7 +19,7 @@
 #endif
 
 /* A loop over the words of an object, which must vanish so that the words live in registers. */
-#define foreach(w, n) HP_EACH(w, 0, n)
+#define foreach(w, n) HP_EACH (w, 0, n)
 #define HP_CHUNK (HP_VECTORS * HP_LANES)
 
 /* Words of each pipe's objects: ray_triangle_primary_words is 6. */
