@@ -9,6 +9,6 @@ $(HASH_PIPES): $(BUILD)/testbench/tools/hash_pipes.o $(BUILD)/testbench/support/
 hash_pipes: $(HASH_PIPES)
 
 hashes: ## hold the committed hashes on all instruction sets, with and without optimisation, gcc, clang and aarch64 under qemu
-	@testbench/tools/hashes.sh "gcc -O3" "gcc -O0" "clang -O2" "clang -O0" "aarch64-linux-gnu-gcc -O2"
+	@JOBS=$(JOBS) testbench/tools/hashes.sh "gcc -O3" "gcc -O0" "clang -O2" "clang -O0" "aarch64-linux-gnu-gcc -O2"
 
 .PHONY: hashes hash_pipes

@@ -24,7 +24,7 @@ for compiler in "$@"; do
     "clang -O2") build=build/clang ;;
     *) build=build/hashes-$(echo "$compiler" | tr ' ' '-') ;;
     esac
-    check "build with $compiler" make BUILD="$build" CC="${compiler% *}" OPT="${compiler#* }" hash_pipes
+    check "build with $compiler" make -j "$JOBS" BUILD="$build" CC="${compiler% *}" OPT="${compiler#* }" CFLAGS=-g0 hash_pipes
     case $compiler in
     aarch64*) hash "$build" "$compiler" 500000 qemu-aarch64 -L /usr/aarch64-linux-gnu ;;
     *-O0) hash "$build" "$compiler" 500000 env ;;
