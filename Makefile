@@ -17,7 +17,7 @@ say = @$(if $(V),,echo "  $(1)  $@";)
 run = $(if $(V),,@)
 
 # ---- packages: one list, installed by `make deps` when something is missing ----------------------------------------
-PACKAGES_BUILD := gcc libc6-dev pkg-config libjansson-dev libopenexr-dev libassimp-dev libpng-dev
+PACKAGES_BUILD := gcc libc6-dev pkg-config libjansson-dev libopenexr-dev libassimp-dev libpng-dev libusb-1.0-0-dev
 PACKAGES_CHECK := libcmocka-dev libgmp-dev mandoc g++
 PACKAGES_CI    := clang libclang-rt-14-dev clang-format gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
 
@@ -58,8 +58,9 @@ endif
 INC    := -Irtl_model/include -Idriver/include -I.
 CFLAGS ?=
 ALL_CFLAGS = $(OPT) $(BASE) $(INC) -DHITPIPE_BUILD_VERSION='"$(VERSION)"' $(CFLAGS)
+LIB_CFLAGS = $(shell pkg-config --cflags libusb-1.0 2>/dev/null)
 HOST_CFLAGS = $(shell pkg-config --cflags OpenEXR jansson libpng assimp 2>/dev/null)
-LIBS_LIB  := -lm -pthread
+LIBS_LIB  = $(shell pkg-config --libs libusb-1.0 2>/dev/null || echo -lusb-1.0) -lm -pthread
 LIBS_HOST = -lOpenEXRCore $(shell pkg-config --libs jansson libpng assimp 2>/dev/null || echo -ljansson -lpng -lassimp)
 LIBS_TEST := -lcmocka -lgmp
 
@@ -96,7 +97,7 @@ $(BUILD)/host/%.o: host/%.c
 
 $(BUILD)/%.o: %.c
 	$(call say,CC)mkdir -p $(@D)
-	$(run)$(CC) $(ALL_CFLAGS) '-DHP_WIDE_ISAS(X,n,N)=$(foreach i,$(ISAS),X($(i),n,N))' -c $< -o $@
+	$(run)$(CC) $(ALL_CFLAGS) $(LIB_CFLAGS) '-DHP_WIDE_ISAS(X,n,N)=$(foreach i,$(ISAS),X($(i),n,N))' -c $< -o $@
 
 $(LIB): $(LIB_OBJ)
 	$(call say,AR)rm -f $@
