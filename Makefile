@@ -23,7 +23,7 @@ PACKAGES_CI    := clang libclang-rt-14-dev clang-format gcc-aarch64-linux-gnu li
 
 # ---- sources: every room's files, no list by hand --------------------------------------------------------------------
 ARCH    := $(or $(shell $(CC) -dumpmachine 2>/dev/null | cut -d- -f1),$(shell uname -m))
-LIB_SRC := $(filter-out rtl_model/pipes/wide.c,$(wildcard rtl_model/*/*.c)) $(wildcard driver/*.c driver/transport/*.c)
+LIB_SRC := $(filter-out rtl_model/pipes/wide.c,$(wildcard rtl_model/*/*.c)) $(wildcard driver/*.c driver/transport/*.c driver/gadget/*.c)
 HOST_SRC := $(wildcard host/*/*.c)
 SUPPORT_SRC := $(wildcard testbench/support/*.c testbench/reference/*.c)
 TEST_SRC := $(wildcard testbench/unit/test_*.c testbench/equal/test_*.c testbench/system/test_*.c)

@@ -1,6 +1,6 @@
 # What .ci/run needs beyond `make check`.
 deps-ci: ## install the packages of the continuous integration
-	@mk/deps.sh $(PACKAGES_BUILD) $(PACKAGES_CHECK) $(PACKAGES_CI) $(PACKAGES_PEERS)
+	@mk/deps.sh $(PACKAGES_BUILD) $(PACKAGES_CHECK) $(PACKAGES_CI) $(PACKAGES_PEERS) $(PACKAGES_KERNEL)
 
 FORMATTED = $(shell git ls-files '*.c' '*.h' '*.cc' '*.hh')
 

@@ -5,8 +5,8 @@
  *   umockdev -------+-- urb --> gadget -- bulk ------ board (bytes in, bytes out)
  *   USB/IP server -/                     interrupt -- events
  *
- * An urb is one transfer as a host controller sees it: any length, split into USB packets by nobody; a transfer to the
- * host ends early where the device had less to say. What an urb's bytes are is between host and endpoint.
+ * An urb is one transfer as a host controller sees it: any length, split into USB packets by nobody; a transfer to
+ * the host ends early where the device had less to say. What an urb's bytes are is between host and endpoint.
  *
  * One thread at a time per gadget. Not part of the public interface. */
 #ifndef HITPIPE_GADGET_H
@@ -17,7 +17,10 @@
 
 typedef struct hp_gadget hp_gadget;
 
-typedef enum hp_usb_speed { HP_USB_HIGH = 3, HP_USB_SUPER = 5 } hp_usb_speed; /* as USB/IP and the kernel number them */
+typedef enum hp_usb_speed {
+    HP_USB_HIGH = 3,
+    HP_USB_SUPER = 5
+} hp_usb_speed; /* as USB/IP and the kernel number them */
 
 typedef struct hp_gadget_def {
     hp_board_def board;
@@ -48,21 +51,26 @@ struct hp_urb {
     hp_urb *next;              /* the gadget's own */
 };
 
-/* HP_ERROR_USAGE (a serial that is none), or what hp_board_create says. */
+/* A device just plugged in: no configuration, its board in reset. HP_ERROR_USAGE (a serial or speed that is none), or
+ * what hp_board_create says. */
 hp_status hp_gadget_create(const hp_gadget_def *def, hp_gadget **gadget);
 void hp_gadget_destroy(hp_gadget *gadget);
 
-/* Queues an urb behind those of its endpoint. */
+/* Queues an urb behind those of its endpoint. On an endpoint that is halted, not configured or not there it ends with
+ * HP_URB_STALL. May be called in `done`. */
 void hp_gadget_submit(hp_gadget *gadget, hp_urb *urb);
 
-/* Takes back an urb that is not done yet: it ends with HP_URB_CANCELLED. What the board already had of it stays. */
+/* Takes back an urb that is not done yet: it ends with HP_URB_CANCELLED. What the board already had of it stays. An
+ * urb that is done is left alone. May be called in `done`. */
 void hp_gadget_unlink(hp_gadget *gadget, hp_urb *urb);
 
-/* Does what can be done at once, and carries the board on by at most one event. True: something happened, call
- * again; false: nothing can happen before the next submit. */
+/* Does what can be done at once, of each endpoint one urb at most, and carries the board on by at most one event.
+ * True: something happened, call again; false: nothing can happen before the next submit. Not to be called in `done`,
+ * nor are _reset and _destroy. */
 bool hp_gadget_run(hp_gadget *gadget);
 
-/* Bus reset: address and configuration 0, endpoints not halted, all urbs cancelled, the board in reset. */
+/* Bus reset: address and configuration 0, all urbs cancelled, the board in reset. What is
+ * submitted meanwhile, in `done`, stays. */
 void hp_gadget_reset(hp_gadget *gadget);
 
 /* For what shows a device before anybody asks: the 18 bytes of the device descriptor, and the whole configuration. */

@@ -15,6 +15,7 @@ for file in bin/hitpipe lib/libhitpipe.a lib/libhitpipe.so.0 include/hitpipe/hit
     share/man/man1/hitpipe.1 share/man/man1/hitpipe-trace.1 share/man/man3/libhitpipe.3; do
     check "installed: $file" test -s "$top/$file"
 done
+check "the udev rule is installed" cmp mk/60-hitpipe.rules "$top/lib/udev/rules.d/60-hitpipe.rules"
 check "the simulated board stays inside" test ! -e "$top/include/hitpipe/board.h"
 
 # shellcheck disable=SC2086
