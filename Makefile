@@ -19,7 +19,7 @@ say = @$(if $(V),,echo "  $(1)  $@";)
 run = $(if $(V),,@)
 
 # ---- packages: one list, installed by `make deps` when something is missing ----------------------------------------
-PACKAGES_BUILD := gcc libc6-dev pkg-config libjansson-dev libopenexr-dev libassimp-dev libpng-dev libhidapi-dev
+PACKAGES_BUILD := gcc libc6-dev pkg-config libjansson-dev libopenexr-dev libassimp-dev libpng-dev libusb-1.0-0-dev libhidapi-dev
 PACKAGES_CHECK := libcmocka-dev libgmp-dev mandoc g++
 PACKAGES_CI    := clang libclang-rt-14-dev clang-format gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
 
@@ -61,9 +61,9 @@ INC    := -Irtl_model/include -Idriver/include -I.
 CFLAGS ?=
 ALL_CFLAGS = $(OPT) $(BASE) $(INC) -DHITPIPE_BUILD_VERSION='"$(VERSION)"' $(CFLAGS)
 HOST_CFLAGS = $(shell pkg-config --cflags OpenEXR jansson libpng assimp 2>/dev/null)
-PKGS_LIB  := hidapi-$(HIDAPI)
+PKGS_LIB  := hidapi-$(HIDAPI) libusb-1.0
 LIB_CFLAGS = $(shell pkg-config --cflags $(PKGS_LIB) 2>/dev/null)
-LIBS_LIB   = $(shell pkg-config --libs $(PKGS_LIB) 2>/dev/null || echo -lhidapi-$(HIDAPI)) -lm -pthread
+LIBS_LIB   = $(shell pkg-config --libs $(PKGS_LIB) 2>/dev/null || echo -lhidapi-$(HIDAPI) -lusb-1.0) -lm -pthread
 LIBS_HOST = -lOpenEXRCore $(shell pkg-config --libs jansson libpng assimp 2>/dev/null || echo -ljansson -lpng -lassimp)
 LIBS_TEST := -lcmocka -lgmp
 
@@ -98,13 +98,9 @@ $(BUILD)/host/%.o: host/%.c
 	$(call say,CC)mkdir -p $(@D)
 	$(run)$(CC) $(ALL_CFLAGS) $(HOST_CFLAGS) -c $< -o $@
 
-$(BUILD)/driver/%.o: driver/%.c
-	$(call say,CC)mkdir -p $(@D)
-	$(run)$(CC) $(ALL_CFLAGS) $(LIB_CFLAGS) -c $< -o $@
-
 $(BUILD)/%.o: %.c
 	$(call say,CC)mkdir -p $(@D)
-	$(run)$(CC) $(ALL_CFLAGS) '-DHP_WIDE_ISAS(X,n,N)=$(foreach i,$(ISAS),X($(i),n,N))' -c $< -o $@
+	$(run)$(CC) $(ALL_CFLAGS) $(LIB_CFLAGS) '-DHP_WIDE_ISAS(X,n,N)=$(foreach i,$(ISAS),X($(i),n,N))' -c $< -o $@
 
 $(LIB): $(LIB_OBJ)
 	$(call say,AR)rm -f $@
@@ -155,4 +151,4 @@ include $(wildcard mk/*.mk)
 clean: ## remove what was built
 	rm -rf build out
 
--include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
+-include $(shell find $(BUILD) -type f -name '*.d' 2>/dev/null)
