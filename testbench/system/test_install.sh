@@ -25,7 +25,7 @@ check "run it" env LD_LIBRARY_PATH="$top/lib" "$root/shared"
 shared=$output
 # shellcheck disable=SC2086
 check "compile against the archive" $CC -std=c17 -Wall -Wextra -Werror examples/closest.c $flags \
-    "$top/lib/libhitpipe.a" -lm -pthread -o "$root/static"
+    "$top/lib/libhitpipe.a" -lusb-1.0 -lm -pthread -o "$root/static"
 check "run it" "$root/static"
 check "both say the same" test "$shared" = "$output"
 status 0 "the installed program runs" "$top/bin/hitpipe" --version
