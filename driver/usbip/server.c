@@ -2,6 +2,7 @@
 #include <arpa/inet.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <hitpipe/pipe.h>
 #include <netdb.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -132,16 +133,26 @@ static hp_status check_boards(const hp_usbip_def *def, char *why) {
     return HP_OK;
 }
 
+static void say_why(const hp_gadget_def *def, hp_status status, char *why) {
+    bool isa = hp_isa_choose(def->board.isa) != NULL;
+    if (!isa)
+        snprintf(why, HP_USBIP_MESSAGE, "the instruction set %.20s is not to be had here",
+                 def->board.isa ? def->board.isa : getenv("HP_ISA"));
+    else if (status == HP_ERROR_USAGE)
+        snprintf(why, HP_USBIP_MESSAGE, "serial number \"%.20s\": 1 to 12 ASCII characters, no blanks",
+                 def->serial ? def->serial : "");
+    else
+        snprintf(why, HP_USBIP_MESSAGE, "cannot make the board: %s", hp_status_text(status));
+}
+
 static hp_status make_boards(hp_usbip_server *server, const hp_usbip_def *def, char *why) {
     for (size_t i = 0; i < def->count; i++) {
         hp_usbip_export *made = &server->exports[i];
         hp_status status = hp_gadget_create(&def->gadgets[i], &made->gadget);
-        if (status == HP_ERROR_USAGE)
-            snprintf(why, HP_USBIP_MESSAGE, "serial number \"%.20s\": 1 to 12 ASCII characters, no blanks",
-                     def->gadgets[i].serial ? def->gadgets[i].serial : "");
-        else if (status)
-            snprintf(why, HP_USBIP_MESSAGE, "cannot make the board: %s", hp_status_text(status));
-        if (status) return status;
+        if (status) {
+            say_why(&def->gadgets[i], status, why);
+            return status;
+        }
         made->place.busnum = 1;
         made->place.devnum = (unsigned)i + 2; /* 1 is the hub's */
         snprintf(made->place.busid, sizeof made->place.busid, "1-%zu", i + 1);
