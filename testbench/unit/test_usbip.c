@@ -1057,6 +1057,41 @@ static void a_half_closed_connection_is_answered(void **state) {
     stop(s);
 }
 
+/* One query, answered in many packets into urbs that all wait: nobody says more, and the board goes on. */
+static void much_work_goes_on_by_itself(void **state) {
+    (void)state;
+    enum { MANY = 400, RECORDS = 10 };
+    serving *s = prepared(1);
+    hpt_script script = script_of(0);
+    hpt_query all = hpt_query_all(HP_MODE_ALL, TRIANGLES, RAYS, rays);
+    hpt_ask(&script, &all);
+    s->gadgets[0].board.config.packet_results = RECORDS;
+    start(s);
+    int fd = dial_attached(s, "1-1");
+    hpt_packet query = script.packets[2];
+    uint8_t head[HEAD], bytes[1024];
+    script.count = 2;
+    dial_play(fd, 2, &script);
+    script.count = 3;
+    for (uint32_t i = 0; i < MANY; i++) {
+        make_submit(head, 1000000 + i, &(submit){.endpoint = 1, .direction = IN, .length = 1024});
+        write_all(fd, head, HEAD);
+    }
+    make_submit(head, 1, &(submit){.endpoint = 1, .flags = 0x40, .length = (uint32_t)query.n});
+    write_all(fd, head, HEAD);
+    write_all(fd, query.bytes, query.n);
+    for (uint32_t i = 0, answers = 0; i <= MANY; i++) {
+        read_all(fd, head, HEAD);
+        if (get(head + 4) == 1) continue;
+        assert_int_equal(get(head + 4), 1000000 + answers);
+        read_all(fd, bytes, get(head + 24));
+        assert_int_equal(hp_get64(bytes + HP_HEADER_BYTES + HP_AT_RESULT_first), RECORDS * answers++);
+    }
+    close(fd);
+    hpt_script_free(&script);
+    stop(s);
+}
+
 /* ---- time ---- */
 
 static uint64_t now_ms(void) {
@@ -1306,6 +1341,7 @@ int main(void) {
                                        cmocka_unit_test(clients_have_boards_at_the_same_time_and_in_turn),
                                        cmocka_unit_test(one_client_s_faults_are_no_other_s),
                                        cmocka_unit_test(a_half_closed_connection_is_answered),
+                                       cmocka_unit_test(much_work_goes_on_by_itself),
                                        cmocka_unit_test(who_never_asks_is_ended),
                                        cmocka_unit_test(a_handshake_byte_by_byte_is_ended),
                                        cmocka_unit_test(half_a_message_is_not_waited_for_but_silence_is),
