@@ -109,7 +109,7 @@ static const struct argp argp = {
 
 typedef struct boards {
     hp_gadget_def gadgets[HP_USBIP_BOARDS];
-    char serials[HP_USBIP_BOARDS][16]; /* of those that were only counted */
+    char serials[HP_USBIP_BOARDS][24]; /* of those that were only counted */
     size_t count;
 } boards;
 
