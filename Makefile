@@ -19,7 +19,7 @@ say = @$(if $(V),,echo "  $(1)  $@";)
 run = $(if $(V),,@)
 
 # ---- packages: one list, installed by `make deps` when something is missing ----------------------------------------
-PACKAGES_BUILD := gcc libc6-dev pkg-config libjansson-dev libopenexr-dev libassimp-dev libpng-dev libhidapi-dev
+PACKAGES_BUILD := gcc libc6-dev pkg-config libjansson-dev libopenexr-dev libassimp-dev libpng-dev libusb-1.0-0-dev libhidapi-dev
 PACKAGES_CHECK := libcmocka-dev libgmp-dev mandoc g++
 PACKAGES_CI    := clang libclang-rt-14-dev clang-format gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
 
@@ -60,10 +60,10 @@ endif
 INC    := -Irtl_model/include -Idriver/include -I.
 CFLAGS ?=
 ALL_CFLAGS = $(OPT) $(BASE) $(INC) -DHITPIPE_BUILD_VERSION='"$(VERSION)"' $(CFLAGS)
-HOST_CFLAGS = $(shell pkg-config --cflags OpenEXR jansson libpng assimp 2>/dev/null)
-PKGS_LIB  := hidapi-$(HIDAPI)
+PKGS_LIB  := libusb-1.0 hidapi-$(HIDAPI)
 LIB_CFLAGS = $(shell pkg-config --cflags $(PKGS_LIB) 2>/dev/null)
-LIBS_LIB   = $(shell pkg-config --libs $(PKGS_LIB) 2>/dev/null || echo -lhidapi-$(HIDAPI)) -lm -pthread
+HOST_CFLAGS = $(shell pkg-config --cflags OpenEXR jansson libpng assimp 2>/dev/null)
+LIBS_LIB   = $(shell pkg-config --libs $(PKGS_LIB) 2>/dev/null || echo -lusb-1.0 -lhidapi-$(HIDAPI)) -lm -pthread
 LIBS_HOST = -lOpenEXRCore $(shell pkg-config --libs jansson libpng assimp 2>/dev/null || echo -ljansson -lpng -lassimp)
 LIBS_TEST := -lcmocka -lgmp
 
@@ -98,13 +98,9 @@ $(BUILD)/host/%.o: host/%.c
 	$(call say,CC)mkdir -p $(@D)
 	$(run)$(CC) $(ALL_CFLAGS) $(HOST_CFLAGS) -c $< -o $@
 
-$(BUILD)/driver/%.o: driver/%.c
-	$(call say,CC)mkdir -p $(@D)
-	$(run)$(CC) $(ALL_CFLAGS) $(LIB_CFLAGS) -c $< -o $@
-
 $(BUILD)/%.o: %.c
 	$(call say,CC)mkdir -p $(@D)
-	$(run)$(CC) $(ALL_CFLAGS) '-DHP_WIDE_ISAS(X,n,N)=$(foreach i,$(ISAS),X($(i),n,N))' -c $< -o $@
+	$(run)$(CC) $(ALL_CFLAGS) $(LIB_CFLAGS) '-DHP_WIDE_ISAS(X,n,N)=$(foreach i,$(ISAS),X($(i),n,N))' -c $< -o $@
 
 $(LIB): $(LIB_OBJ)
 	$(call say,AR)rm -f $@

@@ -107,7 +107,6 @@ void hp_gadget_reset(hp_gadget *gadget) {
     cancel_all(gadget);
     hp_events_lose(&gadget->reports);
     gadget->address = gadget->configuration = 0;
-    memset(gadget->halted, 0, sizeof gadget->halted);
     hp_gadget_reset_board(gadget);
 }
 

@@ -69,7 +69,7 @@ void hp_gadget_unlink(hp_gadget *gadget, hp_urb *urb);
  * nor are _reset and _destroy. */
 bool hp_gadget_run(hp_gadget *gadget);
 
-/* Bus reset: address and configuration 0, endpoints not halted, all urbs cancelled, the board in reset. What is
+/* Bus reset: address and configuration 0, all urbs cancelled, the board in reset. What is
  * submitted meanwhile, in `done`, stays. */
 void hp_gadget_reset(hp_gadget *gadget);
 

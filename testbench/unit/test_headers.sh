@@ -6,7 +6,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 CC=${CC:-cc}
 INC="-Irtl_model/include -Idriver/include"
-LIBS="$BUILD/libhitpipe.a $(pkg-config --libs "hidapi-${HIDAPI:-hidraw}") -lm -pthread ${SANITIZE:+-fsanitize=$SANITIZE}"
+LIBS="$BUILD/libhitpipe.a $(pkg-config --libs libusb-1.0 "hidapi-${HIDAPI:-hidraw}") -lm -pthread ${SANITIZE:+-fsanitize=$SANITIZE}"
 CXX=$(command -v "${CXX:-c++}" || command -v g++ || command -v clang++)
 
 for header in rtl_model/include/hitpipe/*.h driver/include/hitpipe/*.h; do

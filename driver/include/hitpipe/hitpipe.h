@@ -32,6 +32,11 @@ typedef struct hp_device hp_device;
  * (bytes of an upload, primaries or records of a query). Returning false stops the call with HP_ERROR_CANCELLED. */
 typedef bool hp_progress(void *context, uint64_t done, uint64_t total);
 
+/* Takes a line of libusb's log: a libusb_log_cb. From any thread that libusb is used on, its own included. `level` is
+ * that of libusb: 1 errors, 2 warnings, 3 information, 4 everything. */
+struct libusb_context;
+typedef void hp_usb_log(struct libusb_context *context, unsigned level, const char *text);
+
 /* How to open a device. Always begin with hp_default_device_def. */
 typedef struct hp_device_def {
     uint32_t cookie;    /* set by hp_default_device_def: a def without it is refused with HP_ERROR_USAGE */
@@ -50,6 +55,13 @@ typedef struct hp_device_def {
     unsigned in_flight;    /* most packets under way; 0: as many as the board gives credits for */
     hp_progress *progress; /* NULL: none */
     void *progress_context;
+    unsigned usb_vendor, usb_product; /* usb: identifiers to look for; default those of usb.def, 1209:0001 */
+    /* usb: a context of libusb's to use, which must outlive the device; another thread may handle its events. Its log
+     * is left alone. NULL: one of its own */
+    struct libusb_context *usb_context;
+    /* usb: takes the log of the device's own context, errors and warnings unless the environment's LIBUSB_DEBUG asks
+     * for more. libusb's log handler of the whole process is then set to one that drops. NULL (default): no log */
+    hp_usb_log *usb_log;
 } hp_device_def;
 
 hp_device_def hp_default_device_def(void);
