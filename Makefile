@@ -60,10 +60,10 @@ endif
 INC    := -Irtl_model/include -Idriver/include -I.
 CFLAGS ?=
 ALL_CFLAGS = $(OPT) $(BASE) $(INC) -DHITPIPE_BUILD_VERSION='"$(VERSION)"' $(CFLAGS)
-HOST_CFLAGS = $(shell pkg-config --cflags OpenEXR jansson libpng assimp 2>/dev/null)
-PKGS_LIB  := hidapi-$(HIDAPI) libusb-1.0
+PKGS_LIB  := libusb-1.0 hidapi-$(HIDAPI)
 LIB_CFLAGS = $(shell pkg-config --cflags $(PKGS_LIB) 2>/dev/null)
-LIBS_LIB   = $(shell pkg-config --libs $(PKGS_LIB) 2>/dev/null || echo -lhidapi-$(HIDAPI) -lusb-1.0) -lm -pthread
+HOST_CFLAGS = $(shell pkg-config --cflags OpenEXR jansson libpng assimp 2>/dev/null)
+LIBS_LIB   = $(shell pkg-config --libs $(PKGS_LIB) 2>/dev/null || echo -lusb-1.0 -lhidapi-$(HIDAPI)) -lm -pthread
 LIBS_HOST = -lOpenEXRCore $(shell pkg-config --libs jansson libpng assimp 2>/dev/null || echo -ljansson -lpng -lassimp)
 LIBS_TEST := -lcmocka -lgmp
 

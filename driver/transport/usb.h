@@ -35,5 +35,8 @@ hp_status hp_usb_list(const hp_device_def *def, hp_usb_board **boards, size_t *c
 /* What an error of libusb is to hitpipe, and in words that go on from "cannot open the board: ". */
 hp_status hp_usb_status(int error);
 const char *hp_usb_words(int error);
+/* What can be done about it, to go on behind those words: "; put the udev rule ..."; "" where there is nothing to
+ * say. */
+const char *hp_usb_advice(int error);
 
 #endif
