@@ -641,7 +641,7 @@ static void requests_that_are_none_end_the_client(void **state) {
         uint8_t bytes[8];
         const char *words;
     } requests[] = {
-        {{0x01, 0x10, 0x80, 0x05}, "version 0110"},        {{0x00, 0x00, 0x80, 0x05}, "version"},
+        {{0x01, 0x10, 0x80, 0x05}, "version 0110"},         {{0x00, 0x00, 0x80, 0x05}, "version"},
         {{0x01, 0x11, 0x80, 0x05, 0, 0, 0, 1}, "status 1"}, {{0x01, 0x11, 0x00, 0x05}, "request 0005"},
         {{0x01, 0x11, 0x80, 0x04}, "request 8004"},         {{'G', 'E', 'T', ' ', '/', ' ', 'H', 'T'}, "version"}};
     boards b;
@@ -873,6 +873,12 @@ static bool logged(serving *s, const char *words) {
     return there;
 }
 
+static void clear_log(serving *s) {
+    pthread_mutex_lock(&s->lock);
+    s->log[0] = 0;
+    pthread_mutex_unlock(&s->lock);
+}
+
 static void sleep_ms(unsigned ms) {
     nanosleep(&(struct timespec){ms / 1000, ms % 1000 * 1000000L}, NULL);
 }
@@ -1001,7 +1007,7 @@ static void clients_have_boards_at_the_same_time_and_in_turn(void **state) {
         dial_play(third, 2, &script);
         close(other);
         close(third);
-        s->log[0] = 0;
+        clear_log(s);
         while (dial_import(other = dial(s), "1-2")) close(other);
         close(other);
         wait_for_line(s, "detached from 1-2 (B): the client has closed");
