@@ -78,7 +78,7 @@ detach() {
 as() {
     as_user=$1
     shift
-    su "$as_user" -c 'exec "$@"' sh "$@"
+    su -c 'exec "$@"' -- "$as_user" sh "$@"
 }
 
 # What the kernel itself says of a test: nothing that is a defect, of the kernel's or of a driver that was misused.
