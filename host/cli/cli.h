@@ -20,7 +20,7 @@
 
 typedef struct hp_cli {
     const char *verb;     /* "hitpipe trace" */
-    hp_device_def device; /* --target, --board, --engine, --isa, --threads */
+    hp_device_def device; /* --target, --reconnect, --usb-..., --board, --engine, --isa, --threads */
     const char *report;   /* --report */
     const char *vcd_path; /* --vcd */
     bool json;            /* --json */
@@ -34,7 +34,7 @@ extern const struct argp hp_cli_argp;
 
 hp_cli hp_cli_begin(const char *verb);
 
-/* Opens the board that the options name. The progress bar shows the driver's progress.
+/* Opens the board that the options name. The progress bar shows the driver's progress; Ctrl-C cancels its calls.
  * Errors as hp_open; HP_ERROR_IO: the waveform cannot be written. */
 hp_status hp_cli_open(hp_cli *cli, hp_device **device, hp_fault *fault);
 
