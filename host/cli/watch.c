@@ -1,5 +1,6 @@
 /* hitpipe watch: prints what happens on a board, as it happens. */
 #include "host/cli/cli.h"
+#include "host/cli/interrupt.h"
 #include "host/output/file.h"
 
 #include <hitpipe/packet.h>
@@ -7,7 +8,6 @@
 
 #include <inttypes.h>
 #include <jansson.h>
-#include <signal.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -58,22 +58,6 @@ static const struct argp argp = {
            "were lost on the way, because nobody fetched them in time, are counted where they are missing.",
     .children = children,
 };
-
-/* ---- Ctrl-C ---- */
-
-static volatile sig_atomic_t ended;
-
-static void end(int signal) {
-    (void)signal;
-    ended = 1;
-}
-
-/* Without SA_RESTART: a signal ends the wait for an event. */
-static void end_on_signals(void) {
-    const struct sigaction action = {.sa_handler = end};
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-}
 
 /* ---- printing ---- */
 
@@ -129,7 +113,7 @@ static hp_status take(const watch_options *w, const hp_control_event *event, hp_
 static hp_status watch(const watch_options *w, hp_control *control, hp_fault *fault) {
     double start = now();
     unsigned wait;
-    for (size_t i = 0; i < w->count && !ended && (wait = slice(w, start)) > 0;) {
+    for (size_t i = 0; i < w->count && !hp_interrupted() && (wait = slice(w, start)) > 0;) {
         hp_control_event event;
         hp_status status = hp_control_next_event(control, wait, &event);
         if (status == HP_ERROR_TIMEOUT || status == HP_ERROR_CANCELLED) continue;
@@ -151,7 +135,7 @@ int hp_verb_watch(int argc, char **argv) {
     argp_parse(&argp, argc, argv, 0, NULL, &w);
     hp_fault fault = {0};
     hp_control *control;
-    end_on_signals();
+    hp_interrupt_watch();
     hp_status status = hp_cli_control_open(&w.cli, &control, &fault);
     if (!status) {
         say_begin(&w, control);
