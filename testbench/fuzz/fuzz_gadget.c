@@ -1,13 +1,19 @@
 /* A hostile host before the board's USB side. Input: actions, each a byte and what belongs to it:
  *
- *     0 control   setup (8 bytes), then as many bytes as wLength says, to a device
- *     1 OUT       flags, n (2 bytes), n bytes; flags bit 0: the urb has a zero-length packet behind it, bit 1: the
- * bytes are made a whole packet, bit 2: with the sequence number that the board expects 2 IN        room (2 bytes) 5
- * unlink   which of the pending urbs 3 event     room                   6 run      so many times 4 elsewhere
- * endpoint, room         7 reset
+ *     0 control    setup (8 bytes), then as many bytes as wLength says, to a device
+ *     1 OUT        flags, n (2 bytes), n bytes
+ *     2 IN         room (2 bytes)
+ *     3 event      room
+ *     4 elsewhere  endpoint, room
+ *     5 unlink     which of the pending urbs
+ *     6 run        so many times
+ *     7 reset
  *
- * Every urb must end once, with no more bytes than it has room for and nothing written behind them; every answer that
- * comes in one urb must be a whole packet; and the gadget must come to rest. */
+ * Flags of OUT: bit 0: there is a zero-length packet behind it; bit 1: the bytes are made a whole packet, bit 2: with
+ * the sequence number that the board expects; bit 3: no bytes follow here, the urb has any.
+ *
+ * Every urb must end once, with no more bytes than it has room for and nothing written behind them; what begins like
+ * an answer and fits must be one; and the gadget must come to rest. */
 #include "driver/gadget/gadget.h"
 #include <hitpipe/packet.h>
 #include <stdlib.h>
@@ -16,7 +22,7 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n);
 
 enum { URBS = 64, RUNS = 200000, CONTROL_MOST = 300, CANARY = 0xA5, WHOLE_ROOM = 60000 };
-enum { ZERO_PACKET = 1, WHOLE = 2, EXPECTED = 4 };
+enum { ZERO_PACKET = 1, WHOLE = 2, EXPECTED = 4, ANY = 8 };
 
 typedef struct urb {
     hp_urb urb;
@@ -120,7 +126,7 @@ static void seal(host *h, hp_urb *u, bool expected) {
 static void out(host *h) {
     unsigned flags = next(h);
     hp_urb *u = add(h, 0x01, next_two(h));
-    take_bytes(h, u->bytes, u->length);
+    if (!(flags & ANY)) take_bytes(h, u->bytes, u->length);
     u->zero_packet = flags & ZERO_PACKET;
     if (flags & WHOLE && u->length >= HP_HEADER_BYTES + HP_CRC_BYTES) seal(h, u, flags & EXPECTED);
     hp_gadget_submit(h->gadget, u);

@@ -7,6 +7,8 @@
  *         2 raw      a head of 48 bytes as it is
  *         3 listen   the client fetches its replies
  *
+ * A submit with flag 0x80 has no bytes here: they are 0.
+ *
  * with bit 1: bytes come one by one. Whatever comes, the client is ended or goes on: replies are whole and in order
  * of what they answer, no more is pending than the limits let be, and the board is free behind it. */
 #include "driver/usbip/client.h"
@@ -15,7 +17,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n);
 
-enum { FRAMED = 1, BYTEWISE = 2, RUNS = 200000, MESSAGES = 200, HEAD = HP_USBIP_URB_BYTES };
+enum { FRAMED = 1, BYTEWISE = 2, ZEROS = 0x80, RUNS = 200000, MESSAGES = 200, HEAD = HP_USBIP_URB_BYTES };
 
 typedef struct connection {
     hp_usbip_client *client;
@@ -25,6 +27,7 @@ typedef struct connection {
     uint32_t seqnum;
     bool raw;                                      /* what was said is not known here: replies are not looked at */
     bool in[MESSAGES + 1], answered[MESSAGES + 1]; /* by number */
+    uint32_t unlinks[MESSAGES + 1];                /* number of the urb */
     uint8_t head[HEAD];                            /* of the reply that is coming */
     size_t head_bytes, left;                       /* of it, and of the bytes behind it */
 } connection;
@@ -55,6 +58,11 @@ static void check_head(connection *c) {
     require(seqnum >= 1 && seqnum <= c->seqnum && !c->answered[seqnum]);
     require(command == HP_RET_SUBMIT || moved == 0);
     c->answered[seqnum] = true;
+    if (command == HP_RET_UNLINK && big(c->head + 20) != 0) { /* taken back: it has no reply of its own */
+        uint32_t unlinked = c->unlinks[seqnum];
+        require(unlinked >= 1 && unlinked < seqnum && !c->answered[unlinked]);
+        c->answered[unlinked] = true;
+    }
     c->left = c->in[seqnum] ? moved : 0;
 }
 
@@ -132,13 +140,12 @@ static bool submit(connection *c, uint8_t *head) {
     c->in[c->seqnum] = how & 1;
     for (unsigned i = 0; i < 8; i++) head[40 + i] = (uint8_t)next(c);
     if (!say(c, head, HEAD) || how & 1 || hp_usbip_client_fault(c->client)) return !hp_usbip_client_fault(c->client);
-    size_t there = length < c->n ? length : c->n;
+    size_t there = how & ZEROS ? 0 : length < c->n ? length : c->n;
     if (!say(c, c->data, there)) return false;
     c->data += there;
     c->n -= there;
-    for (; there < length; there++)
-        if (!say(c, (const uint8_t *)"", 1)) return false;
-    return true;
+    static const uint8_t zeros[65536];
+    return say(c, zeros, length - there);
 }
 
 static bool say_message(connection *c) {
@@ -152,7 +159,8 @@ static bool say_message(connection *c) {
     put(head + 8, 1 << 16 | 2);
     if (kind == 0) return submit(c, head);
     put(head, HP_CMD_UNLINK);
-    put(head + 20, next(c));
+    c->unlinks[c->seqnum] = next(c);
+    put(head + 20, c->unlinks[c->seqnum]);
     if (kind == 2) {
         c->raw = true;
         for (unsigned i = 0; i < HEAD; i++) head[i] = (uint8_t)next(c);
