@@ -28,7 +28,7 @@ ARCH    := $(or $(shell $(CC) -dumpmachine 2>/dev/null | cut -d- -f1),$(shell un
 LIB_SRC := $(filter-out rtl_model/pipes/wide.c,$(wildcard rtl_model/*/*.c)) $(wildcard driver/*.c driver/*/*.c)
 HOST_SRC := $(wildcard host/*/*.c)
 SUPPORT_SRC := $(wildcard testbench/support/*.c testbench/reference/*.c)
-TEST_SRC := $(wildcard testbench/unit/test_*.c testbench/equal/test_*.c testbench/system/test_*.c)
+TEST_SRC := $(wildcard testbench/unit/test_*.c testbench/equal/test_*.c testbench/system/test_*.c testbench/usb/test_*.c)
 TEST_SH  := $(wildcard testbench/*/test_*.sh)
 FUZZ_SRC := $(wildcard testbench/fuzz/fuzz_*.c)
 BENCH_SRC := $(wildcard testbench/bench/bench_*.c)
@@ -60,10 +60,10 @@ endif
 INC    := -Irtl_model/include -Idriver/include -I.
 CFLAGS ?=
 ALL_CFLAGS = $(OPT) $(BASE) $(INC) -DHITPIPE_BUILD_VERSION='"$(VERSION)"' $(CFLAGS)
-HOST_CFLAGS = $(shell pkg-config --cflags OpenEXR jansson libpng assimp 2>/dev/null)
-PKGS_LIB  := hidapi-$(HIDAPI) libusb-1.0
+PKGS_LIB  := libusb-1.0 hidapi-$(HIDAPI)
 LIB_CFLAGS = $(shell pkg-config --cflags $(PKGS_LIB) 2>/dev/null)
-LIBS_LIB   = $(shell pkg-config --libs $(PKGS_LIB) 2>/dev/null || echo -lhidapi-$(HIDAPI) -lusb-1.0) -lm -pthread
+HOST_CFLAGS = $(shell pkg-config --cflags OpenEXR jansson libpng assimp 2>/dev/null)
+LIBS_LIB   = $(shell pkg-config --libs $(PKGS_LIB) 2>/dev/null || echo -lusb-1.0 -lhidapi-$(HIDAPI)) -lm -pthread
 LIBS_HOST = -lOpenEXRCore $(shell pkg-config --libs jansson libpng assimp 2>/dev/null || echo -ljansson -lpng -lassimp)
 LIBS_TEST := -lcmocka -lgmp
 
@@ -122,7 +122,7 @@ $(HITPIPE): $(HOST_OBJ) $(LIB) $(HIDAPI_CHOICE)
 
 $(TESTS) $(BENCHES) $(TOOLS): $(BUILD)/%: $(BUILD)/%.o $(SUPPORT_OBJ) $(HOST_LIB_OBJ) $(LIB) $(HIDAPI_CHOICE)
 	$(call say,LD)
-	$(run)$(CC) $(LDSAN) $< $(SUPPORT_OBJ) $(HOST_LIB_OBJ) $(LIB) -o $@ $(LIBS_TEST) $(LIBS_HOST) $(LIBS_LIB)
+	$(run)$(CC) $(LDSAN) $< $(OWN_OBJ) $(SUPPORT_OBJ) $(HOST_LIB_OBJ) $(LIB) -o $@ $(LIBS_TEST) $(LIBS_HOST) $(LIBS_LIB)
 
 # ---- what a new user runs ---------------------------------------------------------------------------------------------
 TERRAIN := vectors/terrain/jacksboro.exr

@@ -10,6 +10,7 @@ hp_device_def hp_default_device_def(void) {
         .retries = 3,
         .usb_vendor = HP_USB_VENDOR,
         .usb_product = HP_USB_PRODUCT,
+        .usb_depth = 4,
     };
     hp_config_preset(&def.board, "usb3");
     return def;

@@ -32,8 +32,26 @@ typedef struct hp_usb_board {
  * caller's to free. HP_ERROR_MEMORY, HP_ERROR_IO: USB cannot be used here. */
 hp_status hp_usb_list(const hp_device_def *def, hp_usb_board **boards, size_t *count, hp_message *message);
 
+/* ---- the transport ---- */
+
+/* Opens the board with this serial number, or the only one (NULL). HP_ERROR_USAGE (usb_ fields out of their range),
+ * HP_ERROR_NO_DEVICE (none, several, no permission, interface busy: in words), HP_ERROR_MEMORY, HP_ERROR_IO. */
+hp_status hp_transport_usb(const hp_device_def *def, const char *serial, hp_transport **transport,
+                           hp_message *message);
+
+/* The same over a handle that is open already; it becomes the transport's, also on error. */
+hp_status hp_transport_usb_wrap(const hp_device_def *def, struct libusb_context *context,
+                                struct libusb_device_handle *handle, hp_transport **transport, hp_message *message);
+
+/* Of the board behind a USB transport, "" when it has none; NULL for a transport of another kind. Lives as long as
+ * the transport. */
+const char *hp_transport_usb_serial(const hp_transport *transport);
+
 /* What an error of libusb is to hitpipe, and in words that go on from "cannot open the board: ". */
 hp_status hp_usb_status(int error);
 const char *hp_usb_words(int error);
+/* What can be done about it, to go on behind those words: "; put the udev rule ..."; "" where there is nothing to
+ * say. */
+const char *hp_usb_advice(int error);
 
 #endif
