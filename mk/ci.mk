@@ -11,7 +11,7 @@ format-check: ## fail if one is not laid out by .clang-format
 	@clang-format --dry-run --Werror $(FORMATTED) && echo "$(words $(FORMATTED)) files well laid out"
 
 # The programs that start threads, under ThreadSanitizer.
-TEST_THREADS ?= test_api test_driver test_board
+TEST_THREADS ?= test_api test_driver test_board test_usbip
 test-threads: ## run the tests that use threads under ThreadSanitizer
 	@$(MAKE) BUILD=build/tsan CC=clang OPT=-O1 SANITIZE=thread $(TEST_THREADS:%=build/tsan/testbench/unit/%)
 	@BUILD=build/tsan testbench/run $(JOBS) $(TEST_THREADS:%=build/tsan/testbench/unit/%)

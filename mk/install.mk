@@ -1,6 +1,6 @@
 # make install: program, library, headers, pkg-config file, udev rule, man pages. PREFIX and DESTDIR as usual.
-PUBLIC_HEADERS := driver/include/hitpipe/hitpipe.h \
-                  $(addprefix rtl_model/include/hitpipe/,types.h config.h counters.h packet.h pipe.h) \
+PUBLIC_HEADERS := $(wildcard driver/include/hitpipe/*.h) \
+                  $(addprefix rtl_model/include/hitpipe/,types.h config.h counters.h packet.h pipe.h usb.h) \
                   $(wildcard rtl_model/include/hitpipe/*.def)
 MAN_PAGES := $(wildcard docs/man/*.[1-9])
 DEST := $(DESTDIR)$(PREFIX)
@@ -13,7 +13,7 @@ install: all ## put program, library, headers, pkg-config file, udev rule and ma
 	ln -sf libhitpipe.so.$(VERSION) $(DEST)/lib/libhitpipe.so.0
 	ln -sf libhitpipe.so.0 $(DEST)/lib/libhitpipe.so
 	install -m 644 $(PUBLIC_HEADERS) $(DEST)/include/hitpipe
-	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' mk/hitpipe.pc.in >$(DEST)/lib/pkgconfig/hitpipe.pc
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@LIBS@|$(LIBS_LIB)|' mk/hitpipe.pc.in >$(DEST)/lib/pkgconfig/hitpipe.pc
 	install -D -m 644 mk/60-hitpipe.rules $(DEST)/lib/udev/rules.d/60-hitpipe.rules
 	@for page in $(MAN_PAGES); do \
 	    install -D -m 644 $$page $(DEST)/share/man/man$${page##*.}/$${page##*/} || exit 1; done

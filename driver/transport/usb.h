@@ -50,5 +50,8 @@ const char *hp_transport_usb_serial(const hp_transport *transport);
 /* What an error of libusb is to hitpipe, and in words that go on from "cannot open the board: ". */
 hp_status hp_usb_status(int error);
 const char *hp_usb_words(int error);
+/* What can be done about it, to go on behind those words: "; put the udev rule ..."; "" where there is nothing to
+ * say. */
+const char *hp_usb_advice(int error);
 
 #endif

@@ -25,6 +25,12 @@ const char *hp_usb_words(int error) {
     return "for a reason that libusb has no name for";
 }
 
+const char *hp_usb_advice(int error) {
+    if (error != LIBUSB_ERROR_ACCESS) return "";
+    return "; put the udev rule 60-hitpipe.rules (make install does) into /usr/lib/udev/rules.d or "
+           "/etc/udev/rules.d, then plug the board in again";
+}
+
 hp_status hp_usb_outcome(enum libusb_transfer_status outcome) {
     switch (outcome) {
 #define HP_USB_OUTCOME(NAME, STATUS, words)                                                                          \

@@ -144,11 +144,8 @@ hp_status hp_usb_list(const hp_device_def *def, hp_usb_board **boards, size_t *c
 static hp_status refused(const hp_usb_board *board, hp_message *message) {
     hp_status status = hp_usb_status(board->error);
     hp_say(message, status == HP_ERROR_DISCONNECTED ? HP_ERROR_NO_DEVICE : status,
-           "cannot open the board at USB bus %u, address %u: %s", board->bus, board->address,
-           hp_usb_words(board->error));
-    if (board->error == LIBUSB_ERROR_ACCESS)
-        hp_say_also(message, "; put the udev rule 60-hitpipe.rules (make install does) into /usr/lib/udev/rules.d or "
-                             "/etc/udev/rules.d, then plug the board in again");
+           "cannot open the board at USB bus %u, address %u: %s%s", board->bus, board->address,
+           hp_usb_words(board->error), hp_usb_advice(board->error));
     return status == HP_ERROR_DISCONNECTED ? HP_ERROR_NO_DEVICE : status;
 }
 

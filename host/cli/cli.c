@@ -46,6 +46,14 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
+static const struct argp_option control_table[] = {
+    {"target", KEY_TARGET, "usb[:SERIAL]", 0,
+     "which board: the only one that is plugged in (default), or one of several", 90},
+    {"usb-id", KEY_USB_ID, "VID:PID", 0, "its identifiers, hexadecimal (default 1209:0001)", 90},
+    {"json", KEY_JSON, NULL, 0, "print for machines, as JSON", 90},
+    {0},
+};
+
 static void set_board(hp_cli *cli, const char *name, struct argp_state *state) {
     hp_fault fault;
     if (hp_board_load(name, &cli->device.board, &fault) != HP_OK)
@@ -137,6 +145,41 @@ void hp_cli_claim(hp_cli *cli, const char *path, struct argp_state *state) {
 }
 
 const struct argp hp_cli_argp = {.options = option_table, .parser = parse};
+
+/* ---- verbs of the control plane ---- */
+
+static const char usb_target[] = "usb";
+
+/* The serial number in usb:SERIAL, NULL for usb alone. False: it is another target. */
+static bool serial_of(const char *target, const char **serial) {
+    size_t n = sizeof usb_target - 1;
+    *serial = NULL;
+    if (strncmp(target, usb_target, n) != 0 || (target[n] != ':' && target[n] != '\0')) return false;
+    if (target[n] == ':') *serial = target + n + 1;
+    return !*serial || **serial;
+}
+
+static error_t parse_control(int key, char *argument, struct argp_state *state) {
+    hp_cli *cli = state->input;
+    const char *serial;
+    if (key == ARGP_KEY_INIT) cli->device.target = usb_target;
+    if (key == KEY_TARGET && !serial_of(argument, &serial))
+        argp_error(state, "--target is usb or usb:SERIAL here, not '%s': the control plane is on USB", argument);
+    return parse(key, argument, state);
+}
+
+const struct argp hp_cli_control_argp = {.options = control_table, .parser = parse_control};
+
+hp_status hp_cli_control_open(const hp_cli *cli, hp_control **control, hp_fault *fault) {
+    hp_control_def def = hp_default_control_def();
+    serial_of(cli->device.target, &def.serial);
+    def.vendor = (uint16_t)cli->device.usb_vendor;
+    def.product = (uint16_t)cli->device.usb_product;
+    hp_status status = hp_control_open(&def, control);
+    return status ? hp_fault_set(fault, status, "%s", hp_control_message(NULL)) : HP_OK;
+}
+
+/* ---- opening and closing ---- */
 
 hp_cli hp_cli_begin(const char *verb) {
     return (hp_cli){.verb = verb, .device = hp_default_device_def(), .bar = hp_progress_bar_new()};

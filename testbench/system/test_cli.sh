@@ -95,6 +95,21 @@ says "a knob" '"key": "lanes"'
 status 4 "info to a full disk" sh -c "'$h' info --config >/dev/full"
 says "by its name" 'standard output: cannot be written: No space left'
 
+# ---- verbs of the control plane; test_umockdev has boards for them ----
+for verb in reset watch; do
+    status 0 "$verb --help" "$h" $verb --help
+    says "$verb --help" "Usage: hitpipe $verb"
+    status 2 "$verb of something" "$h" $verb it
+    status 2 "$verb --engine" "$h" $verb --engine quick
+    for target in model null usb: usb3 ''; do
+        status 2 "$verb --target '$target'" "$h" $verb --target "$target"
+        says "$verb --target '$target'" "usb or usb:SERIAL here, not '$target'"
+    done
+done
+for hz in 0 -1 1e8 '' 99999999999999999999; do status 2 "a clock of '$hz'" "$h" reset --clock "$hz"; done
+for count in 0 -1 many ''; do status 2 "a count of '$count'" "$h" watch --count "$count"; done
+for seconds in 0 -1 nan long '' 1e10; do status 2 "'$seconds' seconds" "$h" watch --seconds "$seconds"; done
+
 # ---- query ----
 cat >"$work/rays.csv" <<END
 ox,oy,oz,dx,dy,dz

@@ -1,5 +1,7 @@
-/* docs/usb.md and the udev rule say what usb.def says; and usb.def itself: fields within their reports, no number
- * twice. */
+/* docs/usb.md and the udev rule say what usb.def and the device itself say; and usb.def: fields fill their reports.
+ */
+#include "driver/gadget/gadget.h"
+#include "testbench/support/board_host.h"
 #include "testbench/support/page.h"
 #include <ctype.h>
 #include <hitpipe/usb.h>
@@ -87,6 +89,55 @@ static void fields_fill_their_reports(void **state) {
     assert_int_equal(left, 0);
 }
 
+/* ---- the bytes shown ---- */
+
+static void ignore(hp_urb *urb) {
+    (void)urb;
+}
+
+/* Bytes of the answer to GET_DESCRIPTOR for the device or, with `interface`, for the HID. */
+static size_t descriptor(hp_gadget *gadget, bool interface, unsigned type, uint8_t *bytes, size_t room) {
+    hp_urb urb = {.bytes = bytes, .length = room, .done = ignore};
+    const uint8_t setup[8] = {
+        interface ? 0x81 : 0x80, 6, 0, (uint8_t)type, interface ? HP_USB_HID_INTERFACE : 0, 0, (uint8_t)room,
+        (uint8_t)(room >> 8)};
+    memcpy(urb.setup, setup, sizeof setup);
+    hp_gadget_submit(gadget, &urb);
+    while (hp_gadget_run(gadget)) {
+    }
+    assert_int_equal(urb.status, HP_URB_OK);
+    return urb.moved;
+}
+
+/* Each block is a descriptor that the device side sends. */
+static void the_page_shows_the_descriptors(void **state) {
+    static const struct {
+        const char *title;
+        hp_usb_speed speed;
+        bool interface;
+        unsigned type;
+    } shown[] = {
+        {"device-high", HP_USB_HIGH, false, 1},          {"device-super", HP_USB_SUPER, false, 1},
+        {"configuration-high", HP_USB_HIGH, false, 2},   {"configuration-super", HP_USB_SUPER, false, 2},
+        {"object-store-super", HP_USB_SUPER, false, 15}, {"report", HP_USB_HIGH, true, 0x22},
+    };
+    enum { SHOWN = sizeof shown / sizeof shown[0], ROOM = 512 };
+    uint8_t of_page[ROOM], of_device[ROOM];
+    const char *title;
+    for (unsigned i = 0; i < SHOWN; i++) {
+        hp_gadget_def def = {
+            .board = hpt_board("usb3", HP_ENGINE_QUICK), .serial = "HP-000001", .speed = shown[i].speed};
+        hp_gadget *gadget;
+        assert_int_equal(hp_gadget_create(&def, &gadget), HP_OK);
+        size_t n = page_bytes(*state, i, of_page, ROOM, &title);
+        assert_string_equal(title, shown[i].title);
+        assert_int_equal(n, descriptor(gadget, shown[i].interface, shown[i].type, of_device, ROOM));
+        assert_memory_equal(of_page, of_device, n);
+        hp_gadget_destroy(gadget);
+    }
+    assert_int_equal(page_bytes(*state, SHOWN, of_page, ROOM, &title), 0);
+}
+
 /* Every rule of the file is for these identifiers, one for the data interface, one for the HID. */
 static void the_udev_rule_has_the_identifiers(void **state) {
     test_page *rule = page_open("mk/60-hitpipe.rules");
@@ -108,7 +159,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_page_has_the_device),           cmocka_unit_test(the_page_has_every_report),
         cmocka_unit_test(the_page_has_commands_and_events),  cmocka_unit_test(fields_fill_their_reports),
-        cmocka_unit_test(the_udev_rule_has_the_identifiers),
+        cmocka_unit_test(the_udev_rule_has_the_identifiers), cmocka_unit_test(the_page_shows_the_descriptors),
     };
     return cmocka_run_group_tests(tests, open_page, close_page);
 }
