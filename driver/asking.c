@@ -71,6 +71,7 @@ static hp_status check_primaries(const hp_asking *asking) {
 hp_status hp_begin_asking(hp_asking *asking, hp_device *device, const hp_query_def *def, const float *primaries,
                           size_t n, hp_take_answer *take) {
     if (!device) return HP_ERROR_USAGE;
+    device->completed = 0;
     hp_status status = hp_begin(device);
     if (status) return status;
     if (!def) return hp_say(&device->message, HP_ERROR_USAGE, "no query def");
@@ -81,7 +82,6 @@ hp_status hp_begin_asking(hp_asking *asking, hp_device *device, const hp_query_d
     asking->take = take;
     asking->answered = 0;
     asking->had = asking->taken = 0;
-    device->completed = 0;
     status = check_def(asking);
     if (!status) status = check_secondaries(asking);
     if (!status) status = check_primaries(asking);

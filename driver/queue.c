@@ -37,6 +37,12 @@ static void lost_link(hp_queue *queue) {
     hp_queue_fail(queue, HP_ERROR_DISCONNECTED, "%s", hp_status_text(HP_ERROR_DISCONNECTED));
 }
 
+/* Answers to what was sent before are still good. */
+static void not_sent(hp_queue *queue, hp_command *command, hp_status status) {
+    command->unsent = true;
+    if (!queue->stuck || status == HP_ERROR_DISCONNECTED) queue->stuck = status;
+}
+
 static void in_done(hp_transfer *transfer) {
     hp_queue *queue = transfer->owner;
     queue->arrived[queue->arrivals++] = transfer;
@@ -46,10 +52,8 @@ static void out_done(hp_transfer *transfer) {
     hp_command *command = transfer->owner;
     hp_queue *queue = command->queue;
     command->sending = false;
-    command->unsent = transfer->status != HP_OK;
     hp_queue_renew_deadline(queue);
-    if (transfer->status == HP_ERROR_DISCONNECTED) lost_link(queue);
-    if (transfer->status && !queue->fault) queue->fault = transfer->status;
+    if (transfer->status) not_sent(queue, command, transfer->status);
 }
 
 static void listen(hp_queue *queue, hp_transfer *transfer) {
@@ -136,15 +140,11 @@ static void send_command(hp_queue *queue, hp_command *command) {
     hp_status status = queue->transport->ops->submit_out(queue->transport, &command->transfer);
     if (status == HP_OK) return;
     command->sending = false;
-    command->unsent = true;
-    if (status == HP_ERROR_DISCONNECTED)
-        lost_link(queue);
-    else
-        queue->fault = status;
+    not_sent(queue, command, status);
 }
 
 static void send_ready(hp_queue *queue) {
-    while (!queue->fault && !queue->abandoned && queue->sent < queue->count) {
+    while (!queue->fault && !queue->stuck && !queue->abandoned && queue->sent < queue->count) {
         hp_command *command = hp_queue_at(queue, queue->sent);
         bool credit = hp_ahead(queue->limit, queue->next_sequence) > 0 || command->opcode == HP_OPCODE_HELLO;
         if (!credit) break;
@@ -173,6 +173,7 @@ static bool recall(hp_queue *queue) {
         unsigned completed;
         hp_status status = ops->poll(queue->transport, now < deadline ? (unsigned)(deadline - now) : 0, &completed);
         while (queue->arrivals) listen(queue, queue->arrived[--queue->arrivals]); /* too late to be of use */
+        if (status == HP_ERROR_DISCONNECTED) lost_link(queue);
         if (status || now >= deadline) break;
     }
     return !holds_some(queue);
@@ -202,7 +203,7 @@ static void go_back(hp_queue *queue, bool silent) {
     queue->counts.again += queue->abandoned ? 0 : queue->sent;
     if (queue->abandoned) queue->count = 0;
     queue->sent = queue->heard = 0;
-    queue->fault = HP_OK;
+    queue->fault = queue->stuck = HP_OK;
     queue->guessing = silent;
     queue->next_sequence = queue->expected;
     /* A board that says nothing has nothing left to do, so it has room for a packet, whatever the credit says. */
@@ -212,20 +213,16 @@ static void go_back(hp_queue *queue, bool silent) {
 
 /* ---- waiting ---- */
 
-/* Looks at what came, in order, and gives the transfers back to the transport. */
+/* Looks at what came, in order, and gives the transfers back to the transport. What came before the link was lost is
+ * good. */
 static void take_arrivals(hp_queue *queue) {
-    unsigned arrivals = queue->arrivals;
+    unsigned arrivals = queue->arrivals, i = 0;
     hp_transfer *arrived[HP_IN_TRANSFERS_MAX];
     memcpy(arrived, queue->arrived, sizeof arrived);
     queue->arrivals = 0;
-    for (unsigned i = 0; i < arrivals; i++) {
-        if (arrived[i]->status == HP_ERROR_DISCONNECTED) {
-            lost_link(queue);
-            return;
-        }
-        hp_queue_judge(queue, arrived[i]);
-        listen(queue, arrived[i]);
-    }
+    for (; i < arrivals && arrived[i]->status != HP_ERROR_DISCONNECTED; i++) hp_queue_judge(queue, arrived[i]);
+    if (i < arrivals || queue->stuck == HP_ERROR_DISCONNECTED) lost_link(queue);
+    for (i = 0; i < arrivals && !queue->disconnected; i++) listen(queue, arrived[i]);
 }
 
 /* Whether no answer is on its way: to what was sent, all came or are lost. */
@@ -235,17 +232,21 @@ static bool all_heard(hp_queue *queue) {
     return true;
 }
 
-/* Waits for the next thing to happen on the link, in short steps when somebody wants to be called meanwhile. True:
- * the time is over, or nothing will come. */
-static bool wait_silently(hp_queue *queue, uint64_t now, hp_status *status) {
+/* Waits for the next thing to happen on the link, in short steps when somebody wants to be called meanwhile. */
+static hp_status await_link(hp_queue *queue, uint64_t now) {
     const hp_transport_ops *ops = queue->transport->ops;
     unsigned wait = now < queue->deadline ? (unsigned)(queue->deadline - now) : 0, completed;
     bool ticks = queue->tick && ops->waits && !queue->abandoned;
-    *status = ops->poll(queue->transport, ticks && wait > TICK_MS ? TICK_MS : wait, &completed);
+    hp_status status = ops->poll(queue->transport, ticks && wait > TICK_MS ? TICK_MS : wait, &completed);
     if (ticks && !queue->tick(queue->tick_context))
         hp_queue_fail(queue, HP_ERROR_CANCELLED, "%s", hp_status_text(HP_ERROR_CANCELLED));
-    if (*status == HP_ERROR_TIMEOUT && ops->waits) return now_ms() >= queue->deadline;
-    return *status != HP_OK || now > queue->deadline;
+    return status;
+}
+
+/* Whether the time for something new is over, or nothing will come. */
+static bool is_silent(const hp_queue *queue, uint64_t before, hp_status status) {
+    if (status == HP_ERROR_TIMEOUT && queue->transport->ops->waits) return now_ms() >= queue->deadline;
+    return status != HP_OK || before > queue->deadline;
 }
 
 /* Sends what may be sent and waits for the next thing to happen on the link. */
@@ -253,16 +254,15 @@ static void advance(hp_queue *queue) {
     listen_again(queue);
     send_ready(queue);
     if (queue->disconnected) return;
-    hp_status status;
-    bool silent = wait_silently(queue, now_ms(), &status);
-    if (status == HP_ERROR_DISCONNECTED) {
-        lost_link(queue);
-        return;
-    }
+    uint64_t before = now_ms();
+    hp_status status = await_link(queue, before);
     take_arrivals(queue);
+    if (status == HP_ERROR_DISCONNECTED) lost_link(queue);
     if (queue->disconnected || queue->forgotten) return;
+    bool silent = is_silent(queue, before, status), over = silent || all_heard(queue);
+    if (over && !queue->fault) queue->fault = queue->stuck;
     if (silent && !queue->fault) queue->fault = status == HP_ERROR_IO ? HP_ERROR_IO : HP_ERROR_TIMEOUT;
-    if (queue->fault && (silent || all_heard(queue))) go_back(queue, silent);
+    if (over && queue->fault) go_back(queue, silent);
 }
 
 hp_status hp_queue_settle(hp_queue *queue) {
@@ -274,7 +274,7 @@ hp_status hp_queue_settle(hp_queue *queue) {
             advance(queue);
     }
     queue->count = queue->sent = queue->heard = 0;
-    queue->fault = queue->failure = HP_OK;
+    queue->fault = queue->stuck = queue->failure = HP_OK;
     queue->abandoned = false;
     queue->tries = 0;
     hp_queue_renew_deadline(queue);

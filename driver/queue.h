@@ -78,6 +78,7 @@ struct hp_queue {
     uint32_t expected, limit; /* what the board last said */
 
     hp_status fault;   /* why the queue goes back; HP_OK: it does not */
+    hp_status stuck;   /* why a command was not sent: the queue goes back when all before it are answered */
     bool guessing;     /* after silence: `expected` may be behind the board's */
     unsigned tries;    /* goings back since something was last taken */
     uint64_t deadline; /* monotonic milliseconds */

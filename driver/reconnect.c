@@ -11,10 +11,6 @@ static uint64_t now_ms(void) {
     return (uint64_t)now.tv_sec * 1000 + (uint64_t)now.tv_nsec / 1000000;
 }
 
-static bool lost(const hp_device *device) {
-    return device->queue.disconnected || !device->session;
-}
-
 /* ---- waiting for the board ---- */
 
 static void pause_for(const hp_device *device, unsigned ms) {
@@ -26,8 +22,9 @@ static void pause_for(const hp_device *device, unsigned ms) {
 }
 
 /* Opens the board anew as soon as it is there. */
-static hp_status await_board(hp_device *device, uint64_t deadline) {
-    hp_message why;
+static hp_status await_board(hp_device *device) {
+    uint64_t deadline = now_ms() + device->def.reconnect_ms;
+    hp_message why = {{0}};
     hp_drop_link(device);
     while (device->reopen(device->reopen_context, &device->transport, &why)) {
         device->transport = NULL;
@@ -55,19 +52,10 @@ static bool same_board(const hp_identity *a, const hp_identity *b) {
            a->ddr_bytes == b->ddr_bytes;
 }
 
-/* Lost again, or reset again, on the way back. */
-static bool again(const hp_device *device, hp_status status) {
-    return device->transport && (device->queue.disconnected || (status == HP_ERROR_SEQUENCE && !device->session));
-}
-
 static hp_status bring_back(hp_device *device) {
-    uint64_t deadline = now_ms() + device->def.reconnect_ms;
     const hp_identity before = device->identity;
-    hp_status status;
-    do {
-        status = device->queue.disconnected ? await_board(device, deadline) : HP_OK;
-        if (!status) status = hp_make_ready(device);
-    } while (status && again(device, status) && now_ms() < deadline);
+    hp_status status = device->queue.disconnected ? await_board(device) : HP_OK;
+    if (!status) status = hp_make_ready(device);
     if (!status && !same_board(&before, &device->identity))
         return hp_say(&device->message, HP_ERROR_DISCONNECTED, "%s; the one that came back is configured otherwise",
                       hp_status_text(HP_ERROR_DISCONNECTED));
@@ -81,10 +69,19 @@ static bool may_come_back(hp_device *device, uint64_t taken) {
     return device->losses++ <= device->def.retries;
 }
 
+/* Lost, or reset: once more, on the way back. */
+static bool is_away(const hp_device *device, hp_status status) {
+    if (status == HP_ERROR_CANCELLED) return false;
+    return device->queue.disconnected || (!device->session && status == HP_ERROR_SEQUENCE);
+}
+
 bool hp_recover(hp_device *device, hp_status *status, uint64_t taken) {
-    if (*status == HP_ERROR_CANCELLED || !lost(device) || !may_come_back(device, taken)) return false;
-    *status = bring_back(device);
-    if (*status) return false;
-    device->reconnections++;
-    return true;
+    while (is_away(device, *status) && may_come_back(device, taken)) {
+        *status = bring_back(device);
+        if (!device->transport) break; /* it did not come */
+        if (*status) continue;
+        device->reconnections++;
+        return true;
+    }
+    return false;
 }

@@ -62,9 +62,11 @@ static hp_status poll(hp_transport *transport, unsigned timeout_ms, unsigned *co
     uint64_t deadline = hp_usb_ms() + timeout_ms;
     for (bool last = timeout_ms == 0;; last = hp_usb_ms() >= deadline) {
         hp_usb_look(usb);
-        *completed = run_done(usb);
+        bool flying = usb->out.flying || usb->into.flying;
+        *completed =
+            usb->gone && flying && !last ? 0 : run_done(usb); /* what came before the board went comes first */
         if (*completed) return HP_OK;
-        if (usb->gone && !usb->out.flying && !usb->into.flying) return HP_ERROR_DISCONNECTED;
+        if (usb->gone && !flying) return HP_ERROR_DISCONNECTED;
         hp_status status = hp_usb_wait(usb, last ? 0 : until(usb, deadline));
         if (status) return status;
         if (!last) continue;

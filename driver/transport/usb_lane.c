@@ -93,6 +93,13 @@ static hp_usb_slot *free_slot(hp_usb_lane *lane) {
 
 static void break_lane(hp_usb_lane *lane);
 
+/* Ends the transfer, now or when the last of its pieces is back. */
+static void fail(hp_usb_lane *lane, hp_transfer *transfer, hp_status status) {
+    transfer->begun = transfer->room;
+    transfer->status = status;
+    if (!transfer->pieces) end(lane, transfer, status);
+}
+
 /* False: libusb does not take it, and the lane is broken. */
 static bool fly(hp_usb_slot *slot, hp_transfer *transfer, uint8_t *bytes, size_t n, bool last) {
     hp_usb_lane *lane = slot->lane;
@@ -112,8 +119,8 @@ static bool fly(hp_usb_slot *slot, hp_transfer *transfer, uint8_t *bytes, size_t
     if (error == LIBUSB_ERROR_NO_DEVICE) usb->gone = true;
     if (error == LIBUSB_ERROR_NO_MEM && lane->flying) return false; /* of the kernel's: again when something landed */
     lane->failures = error == LIBUSB_ERROR_NO_MEM ? 1 : lane->failures + 1; /* others may free some soon */
+    if (transfer) fail(lane, transfer, hp_usb_status(error));
     break_lane(lane);
-    if (transfer && !transfer->pieces) end(lane, transfer, hp_usb_status(error));
     return false;
 }
 

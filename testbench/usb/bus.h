@@ -55,8 +55,9 @@ struct hpt_device {
     pthread_t clock;
     bool ticking;
     pthread_cond_t changed;
-    hpt_pendings later;   /* ended urbs, delayed */
-    uint64_t push_due_us; /* 0: never */
+    hpt_pendings later;      /* ended urbs, delayed */
+    uint64_t push_due_us;    /* 0: never */
+    uint64_t release_due_us; /* of what the cable holds; 0: it holds nothing */
 };
 
 /* Everything of the bus is under one lock, which the functions below expect to be held. */

@@ -99,8 +99,8 @@ static void drop_first(wire **list) {
     free(packet);
 }
 
-static wire *new_wire(hpt_cable *cable, const uint8_t *bytes, size_t n) {
-    wire *packet = calloc(1, sizeof *packet + n);
+static wire *new_wire(hpt_cable *cable, const uint8_t *bytes, size_t n, size_t room) {
+    wire *packet = calloc(1, sizeof *packet + (room > n ? room : n));
     if (!packet) abort();
     packet->cable = cable;
     packet->n = n;
@@ -234,6 +234,10 @@ static bool change(hpt_cable *cable, hpt_fault fault, wire *packet) {
         packet->n = fault.argument < packet->n ? packet->n - fault.argument : 1;
         packet->zero = packet->n % cable->packet == 0;
         return true;
+    case HPT_FAULT_GROW:
+        if (packet->n < fault.argument) packet->n = fault.argument;
+        packet->zero = packet->n % cable->packet == 0;
+        return true;
     case HPT_FAULT_NO_ZERO:
         packet->zero = false;
         return true;
@@ -291,9 +295,14 @@ static void common_faults(hpt_cable *cable, hpt_fault fault, bool in) {
     cable->pulled(cable->context, fault.argument);
 }
 
+static bool to_host_alone(hpt_fault_kind kind) {
+    return kind == HPT_FAULT_OVERFLOW || kind == HPT_FAULT_GROW || kind == HPT_FAULT_NEWER;
+}
+
 static void pass_out(hpt_cable *cable, hpt_urb *host) {
     hpt_fault fault = cable->choose(cable->context, false, cable->number[0]++, cable->out, cable->out_n);
-    wire *packet = new_wire(cable, cable->out, cable->out_n);
+    if (to_host_alone(fault.kind)) fault.kind = HPT_FAULT_NONE;
+    wire *packet = new_wire(cable, cable->out, cable->out_n, 0);
     int error = host_error(fault);
     cable->out_n = 0;
     bool passes = change(cable, fault, packet) && fault.kind != HPT_FAULT_UNPLUG && fault.kind != HPT_FAULT_STALL;
@@ -302,7 +311,7 @@ static void pass_out(hpt_cable *cable, hpt_urb *host) {
         host = NULL;
     }
     common_faults(cable, fault, false);
-    if (fault.kind == HPT_FAULT_DUPLICATE) pass_on(cable, new_wire(cable, packet->bytes, packet->n), false);
+    if (fault.kind == HPT_FAULT_DUPLICATE) pass_on(cable, new_wire(cable, packet->bytes, packet->n, 0), false);
     if (!passes)
         free(packet);
     else if (fault.kind == HPT_FAULT_SWAP && !cable->swapped[0])
@@ -314,7 +323,7 @@ static void pass_out(hpt_cable *cable, hpt_urb *host) {
 
 static void pass_in(hpt_cable *cable, const uint8_t *bytes, size_t n) {
     hpt_fault fault = cable->choose(cable->context, true, cable->number[1]++, bytes, n);
-    wire *packet = new_wire(cable, bytes, n);
+    wire *packet = new_wire(cable, bytes, n, fault.kind == HPT_FAULT_GROW ? fault.argument : 0);
     bool passes = change(cable, fault, packet) && fault.kind != HPT_FAULT_UNPLUG;
     int error = fault.kind == HPT_FAULT_OVERFLOW ? -EOVERFLOW : host_error(fault);
     hpt_urb *host = cable->in.first;
@@ -325,7 +334,7 @@ static void pass_in(hpt_cable *cable, const uint8_t *bytes, size_t n) {
     } else if (error < 0) {
         fail_in(cable, error);
     }
-    if (fault.kind == HPT_FAULT_DUPLICATE) pass_on(cable, new_wire(cable, packet->bytes, packet->n), true);
+    if (fault.kind == HPT_FAULT_DUPLICATE) pass_on(cable, new_wire(cable, packet->bytes, packet->n, 0), true);
     if (!passes)
         free(packet);
     else if (fault.kind == HPT_FAULT_SWAP && !cable->swapped[1])
@@ -365,16 +374,16 @@ static bool fetch_more(hpt_cable *cable) {
     return any;
 }
 
-/* When nothing else happens, a packet that was to come behind another comes. */
-static bool release(hpt_cable *cable) {
-    bool any = false;
+bool hpt_cable_holds(const hpt_cable *cable) {
+    return cable->swapped[0] || cable->swapped[1];
+}
+
+void hpt_cable_release(hpt_cable *cable) {
     for (unsigned in = 0; in < 2; in++) {
         wire *packet = cable->swapped[in];
         cable->swapped[in] = NULL;
-        any |= packet != NULL;
         if (packet) pass_on(cable, packet, in);
     }
-    return any;
 }
 
 /* ---- the host's side ---- */
@@ -443,7 +452,6 @@ void hpt_cable_run(hpt_cable *cable) {
         any = fetch_more(cable);
         while (deal(cable)) any = true;
         while (hp_gadget_run(cable->gadget)) any = true;
-        if (!any) any = release(cable);
         any |= cable->reset_due;
     }
 }

@@ -53,6 +53,10 @@ void hpt_cable_submit(hpt_cable *cable, hpt_urb *urb);
 void hpt_cable_unlink(hpt_cable *cable, hpt_urb *urb);
 void hpt_cable_run(hpt_cable *cable);
 
+/* Whether a packet is held that is to come behind another; when none comes, it is to be released after a while. */
+bool hpt_cable_holds(const hpt_cable *cable);
+void hpt_cable_release(hpt_cable *cable);
+
 /* A control request, carried out at once: bytes moved, or -EPIPE. */
 int hpt_cable_control(hpt_cable *cable, const uint8_t setup[8], uint8_t *bytes, size_t length);
 

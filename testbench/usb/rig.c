@@ -19,7 +19,7 @@ static hpt_fault choose(void *context, bool in, unsigned number, const uint8_t *
     (void)bytes, (void)n;
     if (plan->rate && (unsigned)hpt_random_below(&plan->random, plan->rate) == 0) {
         hpt_fault_kind kind = plan->kinds[hpt_random_below(&plan->random, plan->kind_count)];
-        unsigned argument = (unsigned)hpt_random_below(&plan->random, 400);
+        unsigned argument = (unsigned)hpt_random_below(&plan->random, kind == HPT_FAULT_GROW ? 600000 : 400);
         if (kind == HPT_FAULT_STALL || kind == HPT_FAULT_PROTO) argument %= 2;
         if (kind == HPT_FAULT_UNPLUG) argument = 1; /* back at once */
         return happens(plan, (hpt_fault){kind, argument});
@@ -35,6 +35,11 @@ void rig_fault(rig *r, hpt_fault_kind kind, unsigned argument, bool in, unsigned
         .from = hpt_counts(r->board).packets[in] + skip,
         .count = count,
     };
+}
+
+void rig_random_faults(rig *r, uint64_t seed, unsigned rate, const hpt_fault_kind *kinds, unsigned count) {
+    r->plan = (rig_plan){.rate = rate, .random = hpt_random_seed(seed), .kind_count = count};
+    memcpy(r->plan.kinds, kinds, count * sizeof *kinds);
 }
 
 void rig_no_faults(rig *r) {

@@ -54,6 +54,8 @@ hp_status rig_upload(rig *r);
 
 /* Lets a fault happen to `count` packets of a direction, from the one behind the next `skip` on. */
 void rig_fault(rig *r, hpt_fault_kind kind, unsigned argument, bool in, unsigned skip, unsigned count);
+/* Lets one packet in `rate`, of either direction, suffer one of these, with a random argument. */
+void rig_random_faults(rig *r, uint64_t seed, unsigned rate, const hpt_fault_kind *kinds, unsigned count);
 void rig_no_faults(rig *r);
 
 hp_status rig_ask_closest(rig *r, hp_result *results); /* RIG_RAYS of them, filled with rubbish before */

@@ -6,6 +6,8 @@
 #include <string.h>
 #include <time.h>
 
+enum { RELEASE_US = 1000000 };
+
 pthread_mutex_t hpt_lock = PTHREAD_MUTEX_INITIALIZER;
 static hpt_device *devices[HPT_DEVICES_MOST];
 static unsigned last_address = 1; /* of the root hub */
@@ -79,6 +81,12 @@ static void pulled(hpt_device *device, unsigned back_ms) {
 void hpt_settle(hpt_device *device) {
     if (device->present) hpt_cable_run(device->cable);
     if (device->pull_due) pull(device);
+    if (!hpt_cable_holds(device->cable)) {
+        device->release_due_us = 0;
+    } else if (!device->release_due_us) {
+        device->release_due_us = hpt_now_us() + RELEASE_US;
+        hpt_clock_changed(device);
+    }
 }
 
 void hpt_bus_reset(hpt_device *device) {
@@ -92,6 +100,7 @@ void hpt_bus_reset(hpt_device *device) {
 static uint64_t next_due(const hpt_device *device) {
     uint64_t due = device->push_due_us ? device->push_due_us : UINT64_MAX;
     if (device->later.first && device->later.first->due_us < due) due = device->later.first->due_us;
+    if (device->release_due_us && device->release_due_us < due) due = device->release_due_us;
     return due;
 }
 
@@ -110,6 +119,7 @@ static void *run_clock(void *argument) {
         }
         if (device->later.first && device->later.first->due_us <= now) hpt_pending_deliver(device->later.first);
         if (device->push_due_us && device->push_due_us <= now) push(device);
+        if (device->release_due_us && device->release_due_us <= now) hpt_cable_release(device->cable);
         if (device->present) hpt_settle(device);
     }
     pthread_mutex_unlock(&hpt_lock);
