@@ -86,10 +86,15 @@ logged "detached" 'detached from 1-1 \(HP-000001\): the client has closed the co
 # ---- how it ends ----
 kill -INT $server
 ends 0 "SIGINT"
-start --count 2 --speed high --json
+start --count 2 --speed high --json --usb-id 16d0:beef
 check "JSON: address" grep -qE '^  "address": "127\.0\.0\.1:[0-9]+",$' "$work/out"
 check "JSON: two boards" test "$(grep -c '"speed": "high"' "$work/out")" = 2
 check "JSON: the second one" grep -qE '"serial": "HP-000002"' "$work/out"
+exec 3<>"/dev/tcp/127.0.0.1/$port"
+say 3 "$list"
+reply=$(take 3 652)
+check "two boards, high speed, other identifiers" test "${reply:16:8}${reply:616:16}" = 000000020000000316d0beef
+exec 3<&-
 kill -TERM $server
 ends 0 "SIGTERM"
 start --once --serial left --serial right
