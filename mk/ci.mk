@@ -1,6 +1,6 @@
 # What .ci/run needs beyond `make check`.
 deps-ci: ## install the packages of the continuous integration
-	@mk/deps.sh $(PACKAGES_BUILD) $(PACKAGES_CHECK) $(PACKAGES_CI) $(PACKAGES_PEERS)
+	@mk/deps.sh $(PACKAGES_BUILD) $(PACKAGES_CHECK) $(PACKAGES_CI) $(PACKAGES_PEERS) $(PACKAGES_KERNEL)
 
 FORMATTED = $(shell git ls-files '*.c' '*.h' '*.cc' '*.hh')
 
@@ -19,7 +19,7 @@ test-asan: ## the same of gcc
 	@$(MAKE) BUILD=build/asan OPT=-O1 SANITIZE=address,undefined test
 
 # The programs that start threads, under ThreadSanitizer.
-TEST_THREADS ?= test_api test_driver test_board
+TEST_THREADS ?= test_api test_driver test_board test_usbip
 test-threads: ## run the tests that use threads under ThreadSanitizer
 	@$(MAKE) BUILD=build/tsan CC=clang OPT=-O1 SANITIZE=thread $(TEST_THREADS:%=build/tsan/testbench/unit/%)
 	@BUILD=build/tsan testbench/run $(JOBS) $(TEST_THREADS:%=build/tsan/testbench/unit/%)

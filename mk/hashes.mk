@@ -4,7 +4,7 @@ HASH_PIPES := $(BUILD)/hash_pipes
 
 $(HASH_PIPES): $(BUILD)/testbench/tools/hash_pipes.o $(BUILD)/testbench/support/hash.o $(BUILD)/testbench/support/plain_objects.o $(LIB)
 	$(call say,LD)
-	$(run)$(CC) $(LDSAN) $^ -o $@ $(LIBS_LIB)
+	$(run)$(CC) $(LDSAN) $^ -o $@ -lm -pthread
 
 hash_pipes: $(HASH_PIPES)
 
