@@ -28,7 +28,8 @@ ARCH    := $(or $(shell $(CC) -dumpmachine 2>/dev/null | cut -d- -f1),$(shell un
 LIB_SRC := $(filter-out rtl_model/pipes/wide.c,$(wildcard rtl_model/*/*.c)) $(wildcard driver/*.c driver/*/*.c)
 HOST_SRC := $(wildcard host/*/*.c)
 SUPPORT_SRC := $(wildcard testbench/support/*.c testbench/reference/*.c)
-TEST_SRC := $(wildcard testbench/unit/test_*.c testbench/equal/test_*.c testbench/system/test_*.c testbench/usb/test_*.c)
+TEST_SRC := $(wildcard testbench/unit/test_*.c testbench/equal/test_*.c testbench/system/test_*.c testbench/usb/test_*.c \
+                       testbench/umockdev/test_*.c)
 TEST_SH  := $(wildcard testbench/*/test_*.sh)
 FUZZ_SRC := $(wildcard testbench/fuzz/fuzz_*.c)
 BENCH_SRC := $(wildcard testbench/bench/bench_*.c)
@@ -125,7 +126,7 @@ $(HITPIPE): $(HOST_OBJ) $(LIB) $(HIDAPI_CHOICE)
 
 $(TESTS) $(BENCHES) $(TOOLS): $(BUILD)/%: $(BUILD)/%.o $(SUPPORT_OBJ) $(HOST_LIB_OBJ) $(LIB) $(HIDAPI_CHOICE)
 	$(call say,LD)
-	$(run)$(CC) $(LDSAN) $< $(OWN_OBJ) $(SUPPORT_OBJ) $(HOST_LIB_OBJ) $(LIB) -o $@ $(LIBS_TEST) $(LIBS_HOST) $(LIBS_LIB)
+	$(run)$(CC) $(LDSAN) $< $(OWN_OBJ) $(SUPPORT_OBJ) $(HOST_LIB_OBJ) $(LIB) -o $@ $(OWN_LIBS) $(LIBS_TEST) $(LIBS_HOST) $(LIBS_LIB)
 
 # ---- what a new user runs ---------------------------------------------------------------------------------------------
 TERRAIN := vectors/terrain/jacksboro.exr

@@ -191,6 +191,12 @@ static bool is_listed(const hp_control_board *boards, size_t count, const char *
     return false;
 }
 
+static int by_serial(const void *a, const void *b) {
+    const hp_control_board *one = a, *other = b;
+    int order = strcmp(one->serial, other->serial);
+    return order ? order : strcmp(one->path, other->path);
+}
+
 hp_status hp_hidapi_list(uint16_t vendor, uint16_t product, hp_control_board **out, size_t *count,
                          hp_message *message) {
     *out = NULL;
@@ -204,22 +210,27 @@ hp_status hp_hidapi_list(uint16_t vendor, uint16_t product, hp_control_board **o
     for (const struct hid_device_info *info = infos; boards && info; info = info->next)
         if (is_board(info) && !is_listed(boards, *count, info->path)) boards[(*count)++] = take_board(info);
     hid_free_enumeration(infos);
+    if (boards) qsort(boards, *count, sizeof *boards, by_serial);
     *out = boards;
     return boards ? HP_OK : hp_say(message, HP_ERROR_MEMORY, "%s", hp_status_text(HP_ERROR_MEMORY));
 }
 
 /* ---- open ---- */
 
+/* Without permission the libusb back end has no serial number to tell. */
 static hp_status refused(const hp_control_board *board, hp_message *message) {
     char node[128];
+    const char *space = board->serial[0] ? " " : "";
     find_node(board->path, node, sizeof node);
     if (!plugged_in(board->path))
-        return hp_say(message, HP_ERROR_NO_DEVICE, "board %s (%s) was unplugged", board->serial, board->path);
+        return hp_say(message, HP_ERROR_NO_DEVICE, "board%s%s (%s) was unplugged", space, board->serial, board->path);
     if (access(node, R_OK | W_OK) != 0 && errno == EACCES)
-        return hp_say(message, HP_ERROR_NO_DEVICE,
-                      "no permission to open board %s (%s): the udev rule 60-hitpipe.rules gives it, see docs/usb.md",
-                      board->serial, node);
-    return hp_say(message, HP_ERROR_NO_DEVICE, "board %s (%s) cannot be opened: %s", board->serial, board->path,
+        return hp_say(
+            message, HP_ERROR_NO_DEVICE,
+            "no permission to open board%s%s (%s): the udev rule 60-hitpipe.rules gives it, see docs/usb.md", space,
+            board->serial, node);
+    return hp_say(message, HP_ERROR_NO_DEVICE, "board%s%s (%s) cannot be opened: %s", space, board->serial,
+                  board->path,
                   is_node(board->path) ? "it is no HID any more" : "another program holds its HID interface");
 }
 

@@ -52,7 +52,7 @@ typedef struct hp_control_board {
     uint16_t release; /* bcdDevice: 0x0100 is 1.00 */
 } hp_control_board;
 
-/* Writes the first `room` boards with the identifiers of `def` (its serial is not looked at), in no order to rely on,
+/* Writes the first `room` boards with the identifiers of `def` (its serial is not looked at), by serial number,
  * and to *count how many there are. No board is opened or asked. HP_OK also when there is none. HP_ERROR_USAGE. */
 hp_status hp_control_list(const hp_control_def *def, hp_control_board *boards, size_t room, size_t *count);
 
