@@ -328,11 +328,11 @@ static void the_page_has_every_case(void **state) {
     assert_non_null(page);
     page_rows rows = page_table(page, "## Faults of a cable, at level 2");
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
-        page_expect(&rows, "| %s | %s | `%s` |", cases[i].words, cases[i].outcome, cases[i].name);
+        page_expect(&rows, "| 2 | %s | %s | `%s` |", cases[i].words, cases[i].outcome, cases[i].name);
     page_end(&rows);
     rows = page_table(page, "## Other faults, at level 2");
 #define HPT_TEST(program, name, words, outcome)                                                                      \
-    page_expect(&rows, "| %s | %s | `%s: %s` |", words, outcome, #program, #name);
+    page_expect(&rows, "| 2 | %s | %s | `%s: %s` |", words, outcome, #program, #name);
 #include "fault_tests.def"
 #undef HPT_TEST
     page_end(&rows);

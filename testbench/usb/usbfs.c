@@ -227,12 +227,22 @@ static int submit(hpt_file *file, struct usbdevfs_urb *user) {
     return 0;
 }
 
+static hpt_pending *find(const hpt_pendings *list, const hpt_file *file, const struct usbdevfs_urb *user) {
+    hpt_pending *at = list->first;
+    while (at && (at->file != file || at->user != user)) at = at->next;
+    return at;
+}
+
+/* One that is on its late way comes back at once and empty: what it carried is lost. */
 static int discard(hpt_file *file, const struct usbdevfs_urb *user) {
-    hpt_pending *at = file->under_way.first;
-    while (at && at->user != user) at = at->next;
-    if (!at) return -EINVAL;
-    hpt_cable_unlink(file->device->cable, &at->urb);
-    return 0;
+    hpt_pending *at = find(&file->under_way, file, user), *late = find(&file->device->later, file, user);
+    if (at) hpt_cable_unlink(file->device->cable, &at->urb);
+    if (late) {
+        late->urb.error = -ENOENT;
+        late->urb.urb.moved = 0;
+        hpt_pending_deliver(late);
+    }
+    return at || late ? 0 : -EINVAL;
 }
 
 static int reap(hpt_file *file, struct usbdevfs_urb **user) {

@@ -26,6 +26,9 @@ status 0 "info after a reset" hitpipe info
 says "is counted" 'resets: 1,'
 status 0 "abort" hitpipe reset --abort
 status 0 "another clock" hitpipe reset --clock 125000000
+status 0 "a session, which begins with HELLO" hitpipe replay --target usb vectors/ray-triangle/det-zero.hex
+status 0 "info after the clock" hitpipe info
+says "the clock is another from then on" 'clock 125 MHz$'
 status 4 "a clock out of range" hitpipe reset --clock 1
 
 hitpipe watch --count 2 >"$work/events" 2>&1 &

@@ -10,6 +10,7 @@ may() {
     says "$1: the board on USB" '^usb +1209:0001 .*Mbit/s$'
     says "$1: the board's identity" '^board +usb3, protocol 1'
     status 0 "$1: reset" as "$1" hitpipe reset
+    status 0 "$1: replay" as "$1" hitpipe replay --target usb vectors/ray-triangle/det-zero.hex
 }
 may_not() {
     status 0 "$1: info" as "$1" hitpipe info
@@ -17,6 +18,8 @@ may_not() {
     says "$1: the HID too" '^hid .*60-hitpipe\.rules'
     status 4 "$1: reset" as "$1" hitpipe reset
     says "$1: names the rule" '60-hitpipe\.rules'
+    status 4 "$1: replay" as "$1" hitpipe replay --target usb vectors/ray-triangle/det-zero.hex
+    says "$1: names the rule for packets" '60-hitpipe\.rules'
 }
 
 serve
