@@ -283,13 +283,19 @@ static void a_picture_is_the_same_as_the_models(void **state) {
 
 /* ---- watching ---- */
 
-static void watch_begins(unsigned i, const char *options) {
-    hpt_child_free(&m.children[1]);
-    hpt_child_start(&m.children[1], false, "%s watch %s", programs[i], options);
-}
-
 static bool somebody_listens(void) {
     return hpt_mock_listeners(m.boards[0]) > 0;
+}
+
+static bool nobody_listens(void) {
+    return !somebody_listens();
+}
+
+/* When the one before has gone: who waits for somebody to listen is to see this one. */
+static void watch_begins(unsigned i, const char *options) {
+    await(nobody_listens);
+    hpt_child_free(&m.children[1]);
+    hpt_child_start(&m.children[1], false, "%s watch %s", programs[i], options);
 }
 
 /* Events that happened before somebody listened. */

@@ -1005,9 +1005,9 @@ static void clients_have_boards_at_the_same_time_and_in_turn(void **state) {
             sleep_ms(1);
         }
         dial_play(third, 2, &script);
+        clear_log(s);
         close(other);
         close(third);
-        clear_log(s);
         while (dial_import(other = dial(s), "1-2")) close(other);
         close(other);
         wait_for_line(s, "detached from 1-2 (B): the client has closed");
