@@ -123,7 +123,7 @@ const hpt_node_kind hpt_hidraw_node = {.opened = opened, .closed = closed, .answ
 
 /* The attribute dev ends without a newline, or umockdev does not take its link away. */
 static void describe(const hpt_mock_device *mock, const char *serial, const uint8_t *descriptor, size_t n) {
-    char text[4096], hex[2 * HID_MAX_DESCRIPTOR_SIZE + 1] = "";
+    char text[2 * HID_MAX_DESCRIPTOR_SIZE + 1024], hex[2 * HID_MAX_DESCRIPTOR_SIZE + 1] = "";
     for (size_t i = 0; i < n; i++) sprintf(hex + 2 * i, "%02X", descriptor[i]);
     const hp_gadget_def *def = &mock->device->def.gadget;
     unsigned vendor = def->vendor ? def->vendor : HP_USB_VENDOR;
