@@ -60,12 +60,9 @@ static hp_status check_secondaries(hp_asking *asking) {
 static hp_status check_primaries(const hp_asking *asking) {
     hp_device *device = asking->device;
     hp_object object = hp_pair_primary(asking->def->pair);
-    unsigned words = hp_object_words(object);
-    for (size_t i = 0; i < asking->n && !device->def.unchecked; i++) {
-        const char *fault = hp_object_fault(object, asking->primaries + i * words);
-        if (fault) return hp_say(&device->message, HP_ERROR_INPUT, "primary %zu: %s", i, fault);
-    }
-    return HP_OK;
+    size_t at;
+    const char *fault = device->def.unchecked ? NULL : hp_objects_fault(object, asking->primaries, asking->n, &at);
+    return fault ? hp_say(&device->message, HP_ERROR_INPUT, "primary %zu: %s", at, fault) : HP_OK;
 }
 
 hp_status hp_begin_asking(hp_asking *asking, hp_device *device, const hp_query_def *def, const float *primaries,

@@ -23,11 +23,9 @@ static hp_status check_scene(hp_device *device, hp_object object, const float *w
     if (count > most)
         return hp_say(message, HP_ERROR_CAPACITY, "%zu objects of type %s: the board holds %llu", count,
                       hp_object_name(object), (unsigned long long)most);
-    for (size_t i = 0; i < count && !device->def.unchecked; i++) {
-        const char *fault = hp_object_fault(object, words + i * n);
-        if (fault) return hp_say(message, HP_ERROR_INPUT, "%s %zu %s", hp_object_name(object), i, fault);
-    }
-    return HP_OK;
+    size_t at;
+    const char *fault = device->def.unchecked ? NULL : hp_objects_fault(object, words, count, &at);
+    return fault ? hp_say(message, HP_ERROR_INPUT, "%s %zu %s", hp_object_name(object), at, fault) : HP_OK;
 }
 
 static hp_status take_ack(hp_command *command, const uint8_t *payload, uint32_t length, bool last) {

@@ -6,6 +6,10 @@
 #include <string.h>
 
 static inline void hp_put_words(uint8_t *to, const float *words, size_t n) {
+#if __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+    if (n) memcpy(to, words, 4 * n);
+    return;
+#endif
     for (size_t i = 0; i < n; i++) {
         uint32_t bits;
         memcpy(&bits, &words[i], 4);

@@ -195,6 +195,27 @@ const char *hp_object_fault(hp_object object, const float *words) {
     return "is of no known type";
 }
 
+/* A loop without an exit, for compilers to make wide. */
+static bool all_finite(const float *words, size_t n) {
+    uint32_t odd = 0;
+    for (size_t i = 0; i < n; i++) {
+        uint32_t bits;
+        memcpy(&bits, &words[i], sizeof bits);
+        odd |= (bits & 0x7F800000u) == 0x7F800000u;
+    }
+    return !odd;
+}
+
+const char *hp_objects_fault(hp_object object, const float *words, size_t count, size_t *at) {
+    unsigned n = hp_object_words(object);
+    if (object == HP_TRIANGLE && all_finite(words, n * count)) return NULL; /* nothing else is asked of them */
+    for (*at = 0; *at < count; ++*at) {
+        const char *fault = hp_object_fault(object, words + *at * n);
+        if (fault) return fault;
+    }
+    return NULL;
+}
+
 const char *hp_transform_fault(hp_object object, const float matrix[12]) {
     for (unsigned i = 0; i < 12; i++)
         if (!isfinite(matrix[i])) return "the matrix holds a NaN or an infinity";

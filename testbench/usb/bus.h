@@ -55,7 +55,8 @@ struct hpt_device {
     pthread_t clock;
     bool ticking;
     pthread_cond_t changed;
-    hpt_pendings later;      /* ended urbs, delayed */
+    hpt_pendings later;      /* ended urbs, delayed; the earliest first */
+    double busy_us;          /* the wire is, until then */
     uint64_t push_due_us;    /* 0: never */
     uint64_t release_due_us; /* of what the cable holds; 0: it holds nothing */
 };

@@ -153,17 +153,29 @@ void hpt_pending_deliver(hpt_pending *pending) {
     show(file);
 }
 
+/* When an urb that has ended well comes to the host; 0: at once. */
+static uint64_t due(hpt_device *device, const hpt_pending *pending) {
+    const hpt_device_def *def = &device->def;
+    double now = (double)hpt_now_us();
+    if (def->rate && is_bulk(pending)) {
+        if (device->busy_us < now) device->busy_us = now;
+        device->busy_us += 1e3 * (double)pending->urb.urb.moved / def->rate;
+        now = device->busy_us;
+    }
+    if (pending->urb.urb.endpoint & 0x80) now += def->delay_us;
+    return now > (double)hpt_now_us() ? (uint64_t)now : 0;
+}
+
 static void urb_done(hpt_urb *urb) {
     hpt_pending *pending = urb->owner;
     hpt_device *device = pending->file->device;
     device->memory -= pending->bytes;
     device->flying -= is_bulk(pending);
-    bool late = device->def.delay_us && (urb->urb.endpoint & 0x80) && urb->error == 0;
-    if (!late) {
+    pending->due_us = due(device, pending);
+    if (!pending->due_us || urb->error) {
         hpt_pending_deliver(pending);
         return;
     }
-    pending->due_us = hpt_now_us() + device->def.delay_us;
     take(&pending->file->under_way, pending);
     append(&device->later, pending);
     hpt_clock_changed(device);

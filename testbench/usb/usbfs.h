@@ -23,6 +23,7 @@ typedef struct hpt_device_def {
     bool maps;          /* mmap gives memory, as newer kernels do */
     unsigned memory;    /* bytes that urbs may take at a time, as usbcore.usbfs_memory_mb has it; 0: any */
     unsigned delay_us;  /* urbs to the host end so much later */
+    unsigned rate;      /* bulk bytes a millisecond, both directions together; 0: as fast as memory */
     unsigned caps;      /* USBDEVFS_CAP_...; 0: what kernels with a modern host controller have */
 } hpt_device_def;
 
