@@ -51,6 +51,7 @@ static void set_view(draw_options *draw, const char *text, struct argp_state *st
 static void check_complete(draw_options *draw, struct argp_state *state) {
     draw->pair = hp_cli_pair_named(draw->typed, state);
     if (!draw->primary || !draw->secondary) argp_error(state, "--primary and --secondary are needed");
+    hp_cli_two_files(draw->primary, draw->secondary, state);
     if (!draw->out) argp_error(state, "--out is needed");
     hp_cli_claim(&draw->cli, draw->out, state);
 }

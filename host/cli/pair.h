@@ -14,6 +14,9 @@ extern const struct argp hp_cli_pair_argp;
 /* The pair of a name. Ends the program with status 2 when there is none (NULL: none was given). */
 hp_pair hp_cli_pair_named(const char *name, struct argp_state *state);
 
+/* Ends the program with status 2 when both files are "-", standard input, which is there once. */
+void hp_cli_two_files(const char *primary, const char *secondary, struct argp_state *state);
+
 /* Writes the names of the pairs in a mask (bit CODE) with commas between, or "none". */
 void hp_cli_pair_names(uint32_t pairs, char *text, size_t room);
 

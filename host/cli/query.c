@@ -1,10 +1,12 @@
 /* hitpipe query PAIR: primaries of one CSV file against secondaries of another. */
 #include "host/cli/pair.h"
 #include "host/import/csv.h"
+#include "host/import/shape.h"
 #include "host/output/file.h"
 #include "host/output/report.h"
 #include "host/output/result_csv.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -33,7 +35,9 @@ static const struct argp_option option_table[] = {
     {"mode", KEY_MODE, "MODE", 0, "closest (default), any, all, or zip: primary i against secondary i", 1},
     {"nearest", KEY_NEAREST, NULL, 0, "mode closest: a primary without a hit shows the secondary it misses least", 1},
     {"separation", KEY_SEPARATION, "on|off", 0,
-     "whether T of a miss is the distance or inf (default: on in modes all and zip and with --nearest)", 1},
+     "whether the board computes the distance of a miss (default: where it shows, in modes all and zip and with "
+     "--nearest)",
+     1},
     {"out", KEY_OUT, "R.csv", 0, "results: primary,secondary,F,T,cpx,cpy,cpz (default: standard output)", 1},
     {"transform", KEY_TRANSFORM, "12 NUMBERS", 0, "move the secondaries by this 3x4 matrix, row by row", 1},
     {0},
@@ -48,6 +52,7 @@ static void set_transform(query_options *query, const char *text, struct argp_st
 static void check_complete(query_options *query, struct argp_state *state) {
     query->def.pair = hp_cli_pair_named(query->pair, state);
     if (!query->primary || !query->secondary) argp_error(state, "--primary and --secondary are needed");
+    hp_cli_two_files(query->primary, query->secondary, state);
     if (query->def.nearest && query->def.mode != HP_MODE_CLOSEST) argp_error(state, "--nearest is for mode closest");
     if (query->def.nearest && query->def.separation == HP_SEPARATION_OFF)
         argp_error(state, "--nearest needs the distance of a miss: not --separation off");
@@ -106,6 +111,26 @@ static const struct argp argp = {
 
 /* ---- running ---- */
 
+/* Whether the secondaries' type can carry the matrix. hp_query would refuse it too, in fewer words. */
+static hp_status check_transform(const query_options *query, hp_fault *fault) {
+    hp_object object = hp_pair_secondary(query->def.pair);
+    float rows[9];
+    for (unsigned i = 0; i < 12; i++)
+        if (!isfinite(query->matrix[i]))
+            return hp_fault_set(fault, HP_ERROR_INPUT, "--transform: number %u of 12 is %s", i + 1,
+                                isnan(query->matrix[i]) ? "a NaN" : "an infinity, or past binary32");
+    const char *wrong = hp_transform_fault(object, query->matrix);
+    if (!wrong) return HP_OK;
+    for (unsigned i = 0; i < 9; i++) rows[i] = query->matrix[i / 3 * 4 + i % 3];
+    hp_product worst = hp_worst_product(rows, 3);
+    if (object == HP_AABB) return hp_fault_set(fault, HP_ERROR_INPUT, "--transform: %s", wrong);
+    if (worst.i == worst.k)
+        return hp_fault_set(fault, HP_ERROR_INPUT, "--transform: %s: row %u has the squared length %.7g, not 1",
+                            wrong, worst.i + 1, worst.value);
+    return hp_fault_set(fault, HP_ERROR_INPUT, "--transform: %s: rows %u and %u have the scalar product %.7g, not 0",
+                        wrong, worst.i + 1, worst.k + 1, worst.value);
+}
+
 static bool take_records(void *file, const uint32_t *primary, const uint32_t *secondary, const hp_result *records,
                          size_t count) {
     for (size_t i = 0; i < count; i++) hp_result_csv_line(file, primary[i], secondary[i], &records[i]);
@@ -135,9 +160,7 @@ static hp_status send_scene(const query_options *query, hp_device *device, const
     hp_status status = hp_upload(device, object, secondaries->words, secondaries->count);
     if (status != HP_OK) return hp_cli_device_fault(device, status, query->secondary, fault);
     if (query->moved) status = hp_transform(device, query->matrix);
-    if (status != HP_OK) return hp_cli_device_fault(device, status, "--transform", fault);
-    const char *wrong = query->moved ? hp_transform_fault(object, query->matrix) : NULL;
-    return wrong ? hp_fault_set(fault, HP_ERROR_INPUT, "--transform: %s", wrong) : HP_OK;
+    return status == HP_OK ? HP_OK : hp_cli_device_fault(device, status, "--transform", fault);
 }
 
 static hp_status write_report(const query_options *query, hp_device *device, double seconds, hp_fault *fault) {
@@ -191,12 +214,14 @@ int hp_verb_query(int argc, char **argv) {
     hp_fault fault = {0};
     hp_objects primaries = {0}, secondaries = {0};
     hp_progress_bar_begin(&query.cli.bar, "reading");
-    hp_status status = hp_csv_load(query.primary, hp_pair_primary(query.def.pair), &primaries, &fault);
+    hp_status status = query.moved ? check_transform(&query, &fault) : HP_OK;
+    if (status == HP_OK) status = hp_csv_load(query.primary, hp_pair_primary(query.def.pair), &primaries, &fault);
     if (status == HP_OK)
         status = hp_csv_load(query.secondary, hp_pair_secondary(query.def.pair), &secondaries, &fault);
     if (status == HP_OK && query.def.mode == HP_MODE_ZIP && primaries.count != secondaries.count)
-        status = hp_fault_set(&fault, HP_ERROR_INPUT, "zip needs as many secondaries as primaries: %zu and %zu",
-                              secondaries.count, primaries.count);
+        status =
+            hp_fault_set(&fault, HP_ERROR_INPUT, "zip needs as many secondaries as primaries, here are %zu and %zu",
+                         secondaries.count, primaries.count);
     if (status == HP_OK) status = run_on_board(&query, &primaries, &secondaries, &fault);
     hp_objects_free(&primaries);
     hp_objects_free(&secondaries);

@@ -33,7 +33,7 @@ hp_status hp_bytes_read(const char *path, hp_bytes *bytes, hp_fault *fault) {
     bool standard = strcmp(path, "-") == 0;
     *bytes = (hp_bytes){.name = standard ? "(standard input)" : path};
     FILE *file = standard ? stdin : fopen(path, "rb");
-    if (!file) return hp_fault_set(fault, HP_ERROR_INPUT, "%s: %s", path, strerror(errno));
+    if (!file) return hp_fault_set(fault, HP_ERROR_INPUT, "%s: %s", *path ? path : "''", strerror(errno));
     hp_status status = read_all(file, bytes, fault);
     if (!standard) fclose(file);
     if (status != HP_OK) hp_bytes_free(bytes);

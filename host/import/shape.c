@@ -99,3 +99,14 @@ void hp_shape_normal(hp_object object, const float *words, const float point[3],
     normal[1] = n.y;
     normal[2] = n.z;
 }
+
+hp_product hp_worst_product(const float *vectors, unsigned n) {
+    hp_product worst = {0, 0, 1};
+    for (unsigned i = 0; i < n; i++)
+        for (unsigned k = i; k < n; k++) {
+            double value = hp_vector_dot(vector_at(vectors + 3 * i), vector_at(vectors + 3 * k));
+            bool worse = fabs(value - (i == k)) > fabs(worst.value - (worst.i == worst.k));
+            if (worse) worst = (hp_product){i, k, value};
+        }
+    return worst;
+}

@@ -211,7 +211,7 @@ const char *hp_transform_fault(hp_object object, const float matrix[12]) {
     case HP_AABB:
         for (unsigned i = 0; i < 9; i++)
             if (i % 4 == 0 ? rows[i] <= 0 : rows[i] != 0)
-                return "an aabb cannot carry a rotation, a reflection or a shear";
+                return "an aabb cannot carry a rotation, a reflection, a shear or a scale of 0";
         return NULL;
     case HP_OBB:
         return rigid ? NULL : "an obb cannot carry a scale or a shear";

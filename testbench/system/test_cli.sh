@@ -197,16 +197,83 @@ bad_rays() { # NAME WORDS LINE...: exit 3 with the words
 bad_rays "zero direction" 'bad\.csv:2:1: direction is zero' '1,2,3,4,5,6' '1,2,3,0,0,0'
 bad_rays "NaN" 'bad\.csv:1:3: a NaN' '1,nan,3,0,0,1'
 bad_rays "past binary32" 'bad\.csv:1:3: an infinity, or a number past binary32' '1,1e39,3,0,0,1'
-bad_rays "a word" 'bad\.csv:2:7: not a number' '1,2,3,4,5,6' '1,2,3,four,5,6'
-bad_rays "cut off" 'a ray has 6 numbers, here are 3' '1,2,3'
+bad_rays "a word" "bad\.csv:2:7: 'four' is not a number" '1,2,3,4,5,6' '1,2,3,four,5,6'
+bad_rays "cut off" 'a ray has 6 numbers: origin xyz, .*; here are 3' '1,2,3'
 bad_rays "empty" 'no ray in the file' ''
 status 3 "no such file" "$h" query ray-triangle -p "$work/none.csv" -s "$work/triangles.csv"
 says "no such file" 'none\.csv: No such file'
 head -n 2 "$work/rays.csv" >"$work/one.csv"
 status 3 "zip of different counts" "$h" query ray-triangle -m zip -p "$work/one.csv" -s "$work/triangles.csv"
-says "zip of different counts" 'as many secondaries as primaries: 3 and 1'
+says "zip of different counts" 'as many secondaries as primaries, here are 3 and 1'
 status 3 "a matrix that is no number" q --transform "nan,0,0,0, 0,1,0,0, 0,0,1,3"
-says "a matrix that is no number" '--transform: matrix: row 0, column 0'
+says "a matrix that is no number" '--transform: number 1 of 12 is a NaN'
+status 3 "a matrix past binary32" q --transform "1,0,0,1e39, 0,1,0,0, 0,0,1,3"
+says "a matrix past binary32" '--transform: number 4 of 12 is an infinity, or past binary32'
+status 3 "a directory" "$h" query ray-triangle -p "$work" -s "$work/triangles.csv"
+says "a directory" 'Is a directory'
+status 3 "no name" "$h" query ray-triangle -p '' -s "$work/triangles.csv"
+says "no name" "'': No such file"
+status 2 "standard input twice" "$h" query ray-triangle -p - -s -
+says "standard input twice" 'cannot both be standard input'
+status 2 "types the other way round" "$h" query obb-sphere -p a -s b
+says "types the other way round" "no pair 'obb-sphere', but sphere-obb: swap primaries and secondaries"
+
+# ---- every pair as a new user would ask it ----
+rigid=0.6,-0.8,0,1,0.8,0.6,0,2,0,0,1,-1 mirror=-1,0,0,0,0,1,0,0,0,0,1,0 along=2,0,0,1,0,1,0,0,0,0,3,0
+rounded=0.6,-0.8,0,1,0.8,0.6,0,2,0,0,1.0001,-1 shear=1,0.5,0,0,0,1,0,0,0,0,1,0 flat=1,0,0,0,0,1,0,0,0,0,0,0
+echo '{"pipes": ["ray-triangle"]}' >"$work/one.json"
+echo '{"pipes": ["sphere-sphere"]}' >"$work/other.json"
+for pair in $pairs; do
+    primary=$(object "${pair%-*}") secondary=$(object "${pair#*-}")
+    p=$(grep -c '^[^#]' "$primary") s=$(grep -c '^[^#]' "$secondary")
+    a() { "$h" query "$pair" --primary "$primary" --secondary "$secondary" "$@"; }
+    # asks MODE ARGUMENT...: what comes is kept in $came, for checks write $output anew
+    asks() {
+        asks_name="$pair $*"
+        status 0 "$asks_name" a "$@"
+        came=$(printf '%s\n' "$output" | grep '^[0-9]')
+    }
+    lines() { check "$asks_name: $1 records" test "$(printf '%s\n' "$came" | wc -l)" = "$1"; }
+    misses() { printf '%s\n' "$came" | awk -F, '$3 == 0 {print $4}'; } # their T
+    asks --mode closest
+    lines "$p"
+    asks --mode any
+    lines "$p"
+    asks --mode all --separation off
+    lines $((p * s))
+    check "$asks_name: no distances" test "$(misses | grep -vc inf)" = 0
+    asks --mode all
+    lines $((p * s))
+    check "$asks_name: distances" test "$(misses | grep -c inf)" = 0
+    every=$came
+    asks --mode all --engine clocked
+    check "$asks_name: the same" test "$came" = "$every"
+    asks --nearest
+    lines "$p"
+    check "$asks_name: each stands in all" test "$(printf '%s\n' "$came" | grep -vxcF "$every")" = 0
+    sed "$((s + 1))q" "$primary" >"$work/short.csv" # and the comment
+    asks --primary "$work/short.csv" --mode zip
+    lines "$s"
+    check "$asks_name: each stands in all" test "$(printf '%s\n' "$came" | grep -vxcF "$every")" = 0
+    for matrix in "$rigid" "$along" "$rounded" "$shear" "$mirror" "$flat"; do
+        case ${pair#*-}:$matrix in
+        triangle:* | aabb:"$along") wanted=0 ;;
+        aabb:*) wanted=3 ;;
+        *:"$rigid" | *:"$mirror") wanted=0 ;;
+        *) wanted=3 ;;
+        esac
+        status $wanted "$pair moved by $matrix" a --transform "$matrix"
+        [ $wanted = 0 ] || says "$pair refuses $matrix by name" "--transform: an? ${pair#*-} cannot carry a"
+    done
+    board=$work/one.json
+    [ "$pair" = ray-triangle ] && board=$work/other.json
+    status 4 "$pair without its pipe" a --board "$board"
+    says "$pair without its pipe" "board 'usb3' has no pipe $pair; it has (ray-triangle|sphere-sphere)\$"
+done
+status 3 "a rotation of four digits" "$h" query sphere-obb -p "$(object sphere)" -s "$(object obb)" -t "$rounded"
+says "a rotation of four digits" 'an obb cannot carry a scale or a shear: row 3 has the squared length 1\.0002, not 1'
+status 3 "a shear" "$h" query sphere-obb -p "$(object sphere)" -s "$(object obb)" -t "$shear"
+says "a shear" 'rows 1 and 2 have the scalar product 0\.5, not 0'
 
 echo '{"ddr": {"bytes": 72}}' >"$work/tiny.json"
 status 4 "more triangles than the DDR holds" q --board "$work/tiny.json"
