@@ -7,6 +7,8 @@ CC      ?= cc
 BUILD   ?= build
 OPT     ?= -O3
 SANITIZE ?=
+# hidapi's back end: hidraw, or libusb, which works without the kernel's HID driver
+HIDAPI  ?= hidraw
 JOBS    ?= $(shell nproc 2>/dev/null || echo 2)
 ifeq ($(MAKELEVEL),0)
 MAKEFLAGS += -j$(JOBS)
@@ -17,16 +19,17 @@ say = @$(if $(V),,echo "  $(1)  $@";)
 run = $(if $(V),,@)
 
 # ---- packages: one list, installed by `make deps` when something is missing ----------------------------------------
-PACKAGES_BUILD := gcc libc6-dev pkg-config libjansson-dev libopenexr-dev libassimp-dev libpng-dev
+PACKAGES_BUILD := gcc libc6-dev pkg-config libjansson-dev libopenexr-dev libassimp-dev libpng-dev libusb-1.0-0-dev libhidapi-dev
 PACKAGES_CHECK := libcmocka-dev libgmp-dev mandoc g++
 PACKAGES_CI    := clang libclang-rt-14-dev clang-format gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
 
 # ---- sources: every room's files, no list by hand --------------------------------------------------------------------
 ARCH    := $(or $(shell $(CC) -dumpmachine 2>/dev/null | cut -d- -f1),$(shell uname -m))
-LIB_SRC := $(filter-out rtl_model/pipes/wide.c,$(wildcard rtl_model/*/*.c)) $(wildcard driver/*.c driver/transport/*.c)
+LIB_SRC := $(filter-out rtl_model/pipes/wide.c,$(wildcard rtl_model/*/*.c)) $(wildcard driver/*.c driver/*/*.c)
 HOST_SRC := $(wildcard host/*/*.c)
 SUPPORT_SRC := $(wildcard testbench/support/*.c testbench/reference/*.c)
-TEST_SRC := $(wildcard testbench/unit/test_*.c testbench/equal/test_*.c testbench/system/test_*.c)
+TEST_SRC := $(wildcard testbench/unit/test_*.c testbench/equal/test_*.c testbench/system/test_*.c testbench/usb/test_*.c \
+                       testbench/umockdev/test_*.c)
 TEST_SH  := $(wildcard testbench/*/test_*.sh)
 FUZZ_SRC := $(wildcard testbench/fuzz/fuzz_*.c)
 BENCH_SRC := $(wildcard testbench/bench/bench_*.c)
@@ -58,8 +61,10 @@ endif
 INC    := -Irtl_model/include -Idriver/include -I.
 CFLAGS ?=
 ALL_CFLAGS = $(OPT) $(BASE) $(INC) -DHITPIPE_BUILD_VERSION='"$(VERSION)"' $(CFLAGS)
+PKGS_LIB  := libusb-1.0 hidapi-$(HIDAPI)
+LIB_CFLAGS = $(shell pkg-config --cflags $(PKGS_LIB) 2>/dev/null)
 HOST_CFLAGS = $(shell pkg-config --cflags OpenEXR jansson libpng assimp 2>/dev/null)
-LIBS_LIB  := -lm -pthread
+LIBS_LIB   = $(shell pkg-config --libs $(PKGS_LIB) 2>/dev/null || echo -lusb-1.0 -lhidapi-$(HIDAPI)) -lm -pthread
 LIBS_HOST = -lOpenEXRCore $(shell pkg-config --libs jansson libpng assimp 2>/dev/null || echo -ljansson -lpng -lassimp)
 LIBS_TEST := -lcmocka -lgmp
 
@@ -99,23 +104,29 @@ $(BUILD)/host/%.o: host/%.c
 
 $(BUILD)/%.o: %.c
 	$(call say,CC)mkdir -p $(@D)
-	$(run)$(CC) $(ALL_CFLAGS) '-DHP_WIDE_ISAS(X,n,N)=$(foreach i,$(ISAS),X($(i),n,N))' -c $< -o $@
+	$(run)$(CC) $(ALL_CFLAGS) $(LIB_CFLAGS) '-DHP_WIDE_ISAS(X,n,N)=$(foreach i,$(ISAS),X($(i),n,N))' -c $< -o $@
 
 $(LIB): $(LIB_OBJ)
 	$(call say,AR)rm -f $@
 	$(run)ar rcs $@ $^
 
-$(SHLIB): $(LIB_OBJ)
-	$(call say,LD)
-	$(run)$(CC) -shared -Wl,-soname,libhitpipe.so.0 $(LDSAN) $^ -o $@ $(LIBS_LIB)
+# What was linked with the other back end of hidapi is linked again.
+HIDAPI_CHOICE := $(BUILD)/hidapi
+$(HIDAPI_CHOICE): FORCE
+	@mkdir -p $(@D); echo $(HIDAPI) | cmp -s - $@ || echo $(HIDAPI) >$@
+FORCE:
 
-$(HITPIPE): $(HOST_OBJ) $(LIB)
+$(SHLIB): $(LIB_OBJ) $(HIDAPI_CHOICE)
+	$(call say,LD)
+	$(run)$(CC) -shared -Wl,-soname,libhitpipe.so.0 $(LDSAN) $(LIB_OBJ) -o $@ $(LIBS_LIB)
+
+$(HITPIPE): $(HOST_OBJ) $(LIB) $(HIDAPI_CHOICE)
 	$(call say,LD)
 	$(run)$(CC) $(LDSAN) $(HOST_OBJ) $(LIB) -o $@ $(LIBS_HOST) $(LIBS_LIB)
 
-$(TESTS) $(BENCHES) $(TOOLS): $(BUILD)/%: $(BUILD)/%.o $(SUPPORT_OBJ) $(HOST_LIB_OBJ) $(LIB)
+$(TESTS) $(BENCHES) $(TOOLS): $(BUILD)/%: $(BUILD)/%.o $(SUPPORT_OBJ) $(HOST_LIB_OBJ) $(LIB) $(HIDAPI_CHOICE)
 	$(call say,LD)
-	$(run)$(CC) $(LDSAN) $< $(SUPPORT_OBJ) $(HOST_LIB_OBJ) $(LIB) -o $@ $(LIBS_TEST) $(LIBS_HOST) $(LIBS_LIB)
+	$(run)$(CC) $(LDSAN) $< $(OWN_OBJ) $(SUPPORT_OBJ) $(HOST_LIB_OBJ) $(LIB) -o $@ $(OWN_LIBS) $(LIBS_TEST) $(LIBS_HOST) $(LIBS_LIB)
 
 # ---- what a new user runs ---------------------------------------------------------------------------------------------
 TERRAIN := vectors/terrain/jacksboro.exr
@@ -144,4 +155,4 @@ include $(wildcard mk/*.mk)
 clean: ## remove what was built
 	rm -rf build out
 
--include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
+-include $(shell find $(BUILD) -type f -name '*.d' 2>/dev/null)

@@ -44,7 +44,17 @@ static bool of_the_link(unsigned status) {
            status == HP_ERROR_SEQUENCE;
 }
 
+static void other_version(hp_queue *queue, unsigned version) {
+    hp_queue_fail(queue, HP_ERROR_VERSION, "%s: the board speaks version %u, this program version %d; %s",
+                  hp_status_text(HP_ERROR_VERSION), version, HP_PROTOCOL_VERSION,
+                  version > HP_PROTOCOL_VERSION ? "a newer hitpipe is needed" : "the board needs newer firmware");
+}
+
 static void refused(hp_queue *queue, const hp_command *command, const hp_header *header, const uint8_t *payload) {
+    if (header->status == HP_ERROR_VERSION) {
+        other_version(queue, (unsigned)hp_get32(payload + HP_AT_ERROR_detail));
+        return;
+    }
     const char *text = hp_status_text((hp_status)header->status);
     hp_status status = text && header->status != HP_OK ? (hp_status)header->status : HP_ERROR_INTERNAL;
     hp_queue_fail(queue, status, "the board refuses %s: %s (detail %u)", hp_opcode_name(command->opcode),
@@ -107,6 +117,10 @@ void hp_queue_judge(hp_queue *queue, const hp_transfer *transfer) {
     if (known && forgotten(queue, &header)) {
         queue->forgotten = true;
         hp_queue_fail(queue, HP_ERROR_SEQUENCE, "the board was reset and holds no scene any more: upload it again");
+        return;
+    }
+    if (known && damage == HP_ERROR_VERSION && hp_queue_at(queue, 0)->opcode == HP_OPCODE_HELLO) {
+        other_version(queue, header.version); /* its packets are undamaged, and of another version */
         return;
     }
     if (known) note(queue, &header, damage ? NULL : payload, place);

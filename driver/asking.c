@@ -37,7 +37,8 @@ static hp_status check_secondaries(hp_asking *asking) {
     if (device->scene != object)
         return hp_say(&device->message, HP_ERROR_USAGE, "%s needs objects of type %s, the scene has type %s",
                       hp_pair_name(def->pair), hp_object_name(object), hp_object_name(device->scene));
-    const char *fault = device->transformed && !device->unchecked ? hp_transform_fault(object, device->matrix) : NULL;
+    const char *fault =
+        device->transformed && !device->def.unchecked ? hp_transform_fault(object, device->matrix) : NULL;
     if (fault) return hp_say(&device->message, HP_ERROR_INPUT, "transform: %s", fault);
     size_t rest = def->first <= device->scene_count ? device->scene_count - def->first : 0;
     size_t count = def->count;
@@ -60,7 +61,7 @@ static hp_status check_primaries(const hp_asking *asking) {
     hp_device *device = asking->device;
     hp_object object = hp_pair_primary(asking->def->pair);
     unsigned words = hp_object_words(object);
-    for (size_t i = 0; i < asking->n && !device->unchecked; i++) {
+    for (size_t i = 0; i < asking->n && !device->def.unchecked; i++) {
         const char *fault = hp_object_fault(object, asking->primaries + i * words);
         if (fault) return hp_say(&device->message, HP_ERROR_INPUT, "primary %zu: %s", i, fault);
     }
@@ -70,6 +71,7 @@ static hp_status check_primaries(const hp_asking *asking) {
 hp_status hp_begin_asking(hp_asking *asking, hp_device *device, const hp_query_def *def, const float *primaries,
                           size_t n, hp_take_answer *take) {
     if (!device) return HP_ERROR_USAGE;
+    device->completed = 0;
     hp_status status = hp_begin(device);
     if (status) return status;
     if (!def) return hp_say(&device->message, HP_ERROR_USAGE, "no query def");
@@ -79,6 +81,7 @@ hp_status hp_begin_asking(hp_asking *asking, hp_device *device, const hp_query_d
     asking->n = n;
     asking->take = take;
     asking->answered = 0;
+    asking->had = asking->taken = 0;
     status = check_def(asking);
     if (!status) status = check_secondaries(asking);
     if (!status) status = check_primaries(asking);
@@ -133,10 +136,10 @@ static void fill_query(const hp_asking *asking, const hp_part *part, hp_command 
     command->length = HP_QUERY_FIXED + 4 * words * part->primaries;
 }
 
-hp_status hp_ask_all(hp_asking *asking) {
+static hp_status ask_rest(hp_asking *asking) {
     hp_queue *queue = &asking->device->queue;
     hp_status status = HP_OK;
-    for (size_t first = 0; first < asking->n && !status; first += asking->packet) {
+    for (size_t first = asking->answered; first < asking->n && !status; first += asking->packet) {
         hp_command *command;
         status = hp_queue_reserve(queue, &command);
         if (status) break;
@@ -147,8 +150,17 @@ hp_status hp_ask_all(hp_asking *asking) {
         command->owner = asking;
         hp_queue_post(queue, command);
     }
-    status = hp_end(asking->device, hp_queue_finish(queue));
-    if (status) hp_say_also(&asking->device->message, "; %zu of %zu primaries answered", asking->answered, asking->n);
+    return hp_end(asking->device, hp_queue_finish(queue));
+}
+
+hp_status hp_ask_all(hp_asking *asking) {
+    hp_device *device = asking->device;
+    hp_status status;
+    device->progress_total = asking->n;
+    do status = ask_rest(asking);
+    while (status && hp_recover(device, &status, asking->taken));
+    device->completed = asking->answered;
+    if (status) hp_say_also(&device->message, "; %zu of %zu primaries answered", asking->answered, asking->n);
     return status;
 }
 

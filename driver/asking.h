@@ -22,7 +22,9 @@ typedef struct hp_asking {
     size_t packet;        /* primaries in a packet */
     uint32_t secondaries; /* to test each with; mode zip: n */
     hp_take_answer *take;
-    size_t answered;         /* primaries */
+    size_t answered;         /* primaries, from the first on: packets are answered in order */
+    uint64_t had;            /* mode all: records of the packet behind those, which the taker has already */
+    uint64_t taken;          /* results and records that came, each counted once: how far the call has got */
     hp_result *results;      /* hp_query */
     hp_records_taker *taker; /* hp_query_all */
     void *context;

@@ -1,5 +1,6 @@
 /* Defs with their defaults, marked as initialised. */
 #include "device.h"
+#include <hitpipe/usb.h>
 
 hp_device_def hp_default_device_def(void) {
     hp_device_def def = {
@@ -7,6 +8,9 @@ hp_device_def hp_default_device_def(void) {
         .target = "model",
         .timeout_ms = 10000,
         .retries = 3,
+        .usb_vendor = HP_USB_VENDOR,
+        .usb_product = HP_USB_PRODUCT,
+        .usb_depth = 4,
     };
     hp_config_preset(&def.board, "usb3");
     return def;

@@ -34,6 +34,7 @@ static hp_status take_results(hp_command *command, const uint8_t *payload, uint3
             results[i] = masked;
     }
     asking->answered += part->primaries;
+    asking->taken += part->primaries;
     return hp_tell_progress(asking->device, asking->answered, asking->n) ? HP_OK : HP_ERROR_CANCELLED;
 }
 

@@ -58,14 +58,17 @@ static hp_status take_records(hp_command *command, const uint8_t *payload, uint3
         device->batch_primary[i] = (uint32_t)(part->first + part->order[at.group + at.lane]);
         device->batch_secondary[i] = secondary;
     }
-    /* When this was asked before, the taker has the records before `farthest` already. */
-    uint64_t had = command->farthest - command->position;
-    uint32_t skip = command->farthest <= command->position ? 0 : had < count ? (uint32_t)had : count;
+    /* When this was asked before, on this link or one that is lost, the taker has the first records already. */
+    uint64_t had = asking->had > command->position ? asking->had - command->position : 0;
+    uint32_t skip = had < count ? (uint32_t)had : count;
     command->position += count;
+    asking->had += count - skip;
+    asking->taken += count - skip;
     if (skip < count && !asking->taker(asking->context, device->batch_primary + skip, device->batch_secondary + skip,
                                        device->batch_records + skip, count - skip))
         return HP_ERROR_CANCELLED;
     if (last) asking->answered += part->primaries;
+    if (last) asking->had = 0;
     return hp_tell_progress(device, asking->answered, asking->n) ? HP_OK : HP_ERROR_CANCELLED;
 }
 

@@ -6,6 +6,8 @@
 #include <string.h>
 #include <time.h>
 
+enum { TICK_MS = 50 };
+
 static uint64_t now_ms(void) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
@@ -35,6 +37,12 @@ static void lost_link(hp_queue *queue) {
     hp_queue_fail(queue, HP_ERROR_DISCONNECTED, "%s", hp_status_text(HP_ERROR_DISCONNECTED));
 }
 
+/* Answers to what was sent before are still good. */
+static void not_sent(hp_queue *queue, hp_command *command, hp_status status) {
+    command->unsent = true;
+    if (!queue->stuck || status == HP_ERROR_DISCONNECTED) queue->stuck = status;
+}
+
 static void in_done(hp_transfer *transfer) {
     hp_queue *queue = transfer->owner;
     queue->arrived[queue->arrivals++] = transfer;
@@ -45,40 +53,56 @@ static void out_done(hp_transfer *transfer) {
     hp_queue *queue = command->queue;
     command->sending = false;
     hp_queue_renew_deadline(queue);
-    if (transfer->status == HP_ERROR_DISCONNECTED) lost_link(queue);
-    if (transfer->status && !queue->fault) queue->fault = transfer->status;
+    if (transfer->status) not_sent(queue, command, transfer->status);
 }
 
 static void listen(hp_queue *queue, hp_transfer *transfer) {
     hp_status status = queue->transport->ops->submit_in(queue->transport, transfer);
+    queue->idle[transfer - queue->in] = status != HP_OK;
     if (status == HP_ERROR_DISCONNECTED)
         lost_link(queue);
     else if (status)
         hp_queue_fail(queue, status, "cannot read from the board: %s", hp_status_text(status));
 }
 
+/* With all transfers that the transport did not take before. */
+static void listen_again(hp_queue *queue) {
+    for (unsigned i = 0; i < queue->ins && !queue->disconnected; i++)
+        if (queue->idle[i]) listen(queue, &queue->in[i]);
+}
+
+static uint8_t *allocate(const hp_queue *queue, size_t bytes) {
+    hp_transport *transport = queue->transport;
+    return transport->ops->allocate ? transport->ops->allocate(transport, bytes) : malloc(bytes);
+}
+
 hp_status hp_queue_open(hp_queue *queue, hp_transport *transport, hp_message *message, unsigned timeout_ms,
                         unsigned retries) {
-    size_t most = transport->ops->transfer_max(transport);
-    size_t room = hp_packet_bytes(HP_PAYLOAD_MAX) < most ? hp_packet_bytes(HP_PAYLOAD_MAX) : most;
+    const hp_transport_ops *ops = transport->ops;
+    size_t most = ops->transfer_max(transport);
+    size_t packet = hp_packet_bytes(HP_PAYLOAD_MAX) < most ? hp_packet_bytes(HP_PAYLOAD_MAX) : most;
+    size_t room = ops->in_room ? ops->in_room(transport) : packet;
     memset(queue, 0, sizeof *queue);
     queue->transport = transport;
     queue->message = message;
     queue->timeout_ms = timeout_ms;
     queue->retries = retries;
     queue->next_tag = 1;
-    hp_queue_shape(queue, 1, room - hp_packet_bytes(0) - HP_CRC_BYTES);
-    for (unsigned i = 0; i < HP_IN_TRANSFERS; i++) {
-        queue->in[i] = (hp_transfer){.bytes = malloc(room), .room = room, .done = in_done, .owner = queue};
+    queue->borrows = ops->allocate != NULL;
+    hp_queue_shape(queue, 1, packet - hp_packet_bytes(0) - HP_CRC_BYTES);
+    queue->ins = ops->in_transfers ? ops->in_transfers(transport) : HP_IN_TRANSFERS;
+    if (queue->ins > HP_IN_TRANSFERS_MAX) queue->ins = HP_IN_TRANSFERS_MAX;
+    for (unsigned i = 0; i < queue->ins; i++) {
+        queue->in[i] = (hp_transfer){.bytes = allocate(queue, room), .room = room, .done = in_done, .owner = queue};
         if (!queue->in[i].bytes) return hp_say(message, HP_ERROR_MEMORY, "no memory for packets from the board");
     }
-    for (unsigned i = 0; i < HP_IN_TRANSFERS; i++) listen(queue, &queue->in[i]);
+    for (unsigned i = 0; i < queue->ins; i++) listen(queue, &queue->in[i]);
     return queue->failure;
 }
 
 void hp_queue_close(hp_queue *queue) {
-    for (unsigned i = 0; i < HP_WINDOW_MAX; i++) free(queue->commands[i].transfer.bytes);
-    for (unsigned i = 0; i < HP_IN_TRANSFERS; i++) free(queue->in[i].bytes);
+    for (unsigned i = 0; i < HP_WINDOW_MAX && !queue->borrows; i++) free(queue->commands[i].transfer.bytes);
+    for (unsigned i = 0; i < queue->ins && !queue->borrows; i++) free(queue->in[i].bytes);
 }
 
 void hp_queue_shape(hp_queue *queue, unsigned window, size_t payload_max) {
@@ -110,19 +134,17 @@ static void send_command(hp_queue *queue, hp_command *command) {
     };
     command->transfer.room = hp_packet_seal(command->transfer.bytes, &header);
     command->sending = true;
+    command->unsent = false;
     queue->sent++;
     queue->counts.sent++;
     hp_status status = queue->transport->ops->submit_out(queue->transport, &command->transfer);
     if (status == HP_OK) return;
     command->sending = false;
-    if (status == HP_ERROR_DISCONNECTED)
-        lost_link(queue);
-    else
-        queue->fault = status;
+    not_sent(queue, command, status);
 }
 
 static void send_ready(hp_queue *queue) {
-    while (!queue->fault && !queue->abandoned && queue->sent < queue->count) {
+    while (!queue->fault && !queue->stuck && !queue->abandoned && queue->sent < queue->count) {
         hp_command *command = hp_queue_at(queue, queue->sent);
         bool credit = hp_ahead(queue->limit, queue->next_sequence) > 0 || command->opcode == HP_OPCODE_HELLO;
         if (!credit) break;
@@ -132,21 +154,29 @@ static void send_ready(hp_queue *queue) {
 
 /* ---- going back ---- */
 
-/* Takes back what the transport still holds; false when it does not let go. */
+static bool holds_some(const hp_queue *queue) {
+    for (unsigned i = 0; i < queue->window; i++)
+        if (queue->commands[i].sending) return true;
+    return false;
+}
+
+/* Takes back what the transport still holds; false when it does not let go in time. */
 static bool recall(hp_queue *queue) {
-    bool held = false;
+    const hp_transport_ops *ops = queue->transport->ops;
+    uint64_t deadline = now_ms() + queue->timeout_ms;
     for (unsigned i = 0; i < queue->window; i++) {
         hp_command *command = &queue->commands[i];
-        if (command->sending) queue->transport->ops->cancel(queue->transport, &command->transfer);
+        if (command->sending) ops->cancel(queue->transport, &command->transfer);
     }
-    for (unsigned polls = 0; polls <= queue->window; polls++) {
-        held = false;
-        for (unsigned i = 0; i < queue->window; i++) held |= queue->commands[i].sending;
+    while (holds_some(queue)) {
+        uint64_t now = now_ms();
         unsigned completed;
-        if (!held || queue->transport->ops->poll(queue->transport, queue->timeout_ms, &completed)) break;
+        hp_status status = ops->poll(queue->transport, now < deadline ? (unsigned)(deadline - now) : 0, &completed);
         while (queue->arrivals) listen(queue, queue->arrived[--queue->arrivals]); /* too late to be of use */
+        if (status == HP_ERROR_DISCONNECTED) lost_link(queue);
+        if (status || now >= deadline) break;
     }
-    return !held;
+    return !holds_some(queue);
 }
 
 static void give_up(hp_queue *queue) {
@@ -173,7 +203,7 @@ static void go_back(hp_queue *queue, bool silent) {
     queue->counts.again += queue->abandoned ? 0 : queue->sent;
     if (queue->abandoned) queue->count = 0;
     queue->sent = queue->heard = 0;
-    queue->fault = HP_OK;
+    queue->fault = queue->stuck = HP_OK;
     queue->guessing = silent;
     queue->next_sequence = queue->expected;
     /* A board that says nothing has nothing left to do, so it has room for a packet, whatever the credit says. */
@@ -183,55 +213,73 @@ static void go_back(hp_queue *queue, bool silent) {
 
 /* ---- waiting ---- */
 
-/* Looks at what came, in order, and gives the transfers back to the transport. */
+/* Looks at what came, in order, and gives the transfers back to the transport. What came before the link was lost is
+ * good. */
 static void take_arrivals(hp_queue *queue) {
-    unsigned arrivals = queue->arrivals;
-    hp_transfer *arrived[HP_IN_TRANSFERS];
+    unsigned arrivals = queue->arrivals, i = 0;
+    hp_transfer *arrived[HP_IN_TRANSFERS_MAX];
     memcpy(arrived, queue->arrived, sizeof arrived);
     queue->arrivals = 0;
-    for (unsigned i = 0; i < arrivals; i++) {
-        if (arrived[i]->status == HP_ERROR_DISCONNECTED) {
-            lost_link(queue);
-            return;
-        }
-        hp_queue_judge(queue, arrived[i]);
-        listen(queue, arrived[i]);
-    }
+    for (; i < arrivals && arrived[i]->status != HP_ERROR_DISCONNECTED; i++) hp_queue_judge(queue, arrived[i]);
+    if (i < arrivals || queue->stuck == HP_ERROR_DISCONNECTED) lost_link(queue);
+    for (i = 0; i < arrivals && !queue->disconnected; i++) listen(queue, arrived[i]);
+}
+
+/* Whether no answer is on its way: to what was sent, all came or are lost. */
+static bool all_heard(hp_queue *queue) {
+    for (unsigned i = queue->heard; i < queue->sent; i++)
+        if (!hp_queue_at(queue, i)->unsent) return false;
+    return true;
+}
+
+/* Waits for the next thing to happen on the link, in short steps when somebody wants to be called meanwhile. */
+static hp_status await_link(hp_queue *queue, uint64_t now) {
+    const hp_transport_ops *ops = queue->transport->ops;
+    unsigned wait = now < queue->deadline ? (unsigned)(queue->deadline - now) : 0, completed;
+    bool ticks = queue->tick && ops->waits && !queue->abandoned;
+    hp_status status = ops->poll(queue->transport, ticks && wait > TICK_MS ? TICK_MS : wait, &completed);
+    if (ticks && !queue->tick(queue->tick_context))
+        hp_queue_fail(queue, HP_ERROR_CANCELLED, "%s", hp_status_text(HP_ERROR_CANCELLED));
+    return status;
+}
+
+/* Whether the time for something new is over, or nothing will come. */
+static bool is_silent(const hp_queue *queue, uint64_t before, hp_status status) {
+    if (status == HP_ERROR_TIMEOUT && queue->transport->ops->waits) return now_ms() >= queue->deadline;
+    return status != HP_OK || before > queue->deadline;
 }
 
 /* Sends what may be sent and waits for the next thing to happen on the link. */
 static void advance(hp_queue *queue) {
+    listen_again(queue);
     send_ready(queue);
     if (queue->disconnected) return;
-    uint64_t now = now_ms();
-    unsigned wait = now < queue->deadline ? (unsigned)(queue->deadline - now) : 0;
-    unsigned completed;
-    hp_status status = queue->transport->ops->poll(queue->transport, wait, &completed);
-    if (status == HP_ERROR_DISCONNECTED) {
-        lost_link(queue);
-        return;
-    }
+    uint64_t before = now_ms();
+    hp_status status = await_link(queue, before);
     take_arrivals(queue);
+    if (status == HP_ERROR_DISCONNECTED) lost_link(queue);
     if (queue->disconnected || queue->forgotten) return;
-    bool silent = status != HP_OK || now > queue->deadline;
+    bool silent = is_silent(queue, before, status), over = silent || all_heard(queue);
+    if (over && !queue->fault) queue->fault = queue->stuck;
     if (silent && !queue->fault) queue->fault = status == HP_ERROR_IO ? HP_ERROR_IO : HP_ERROR_TIMEOUT;
-    if (queue->fault && (silent || queue->heard == queue->sent)) go_back(queue, silent);
+    if (over && queue->fault) go_back(queue, silent);
 }
 
 hp_status hp_queue_settle(hp_queue *queue) {
     queue->message->text[0] = '\0';
     while (queue->count && !queue->disconnected && !queue->forgotten) {
-        if (queue->heard == queue->sent)
+        if (all_heard(queue))
             go_back(queue, false);
         else
             advance(queue);
     }
     queue->count = queue->sent = queue->heard = 0;
-    queue->fault = queue->failure = HP_OK;
+    queue->fault = queue->stuck = queue->failure = HP_OK;
     queue->abandoned = false;
     queue->tries = 0;
     hp_queue_renew_deadline(queue);
     if (queue->disconnected) lost_link(queue);
+    listen_again(queue);
     return queue->failure;
 }
 
@@ -241,7 +289,7 @@ hp_status hp_queue_reserve(hp_queue *queue, hp_command **command) {
     if (queue->failure) return queue->failure;
     hp_command *free_one = hp_queue_at(queue, queue->count);
     uint8_t *bytes = free_one->transfer.bytes;
-    if (!bytes && !(bytes = malloc(hp_packet_bytes(queue->payload_max)))) {
+    if (!bytes && !(bytes = allocate(queue, hp_packet_bytes(queue->payload_max)))) {
         hp_queue_fail(queue, HP_ERROR_MEMORY, "no memory for a packet");
         return queue->failure;
     }

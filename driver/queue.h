@@ -18,7 +18,7 @@
 #include "transport/transport.h"
 #include <hitpipe/packet.h>
 
-enum { HP_WINDOW_MAX = 64, HP_IN_TRANSFERS = 4 };
+enum { HP_WINDOW_MAX = 64, HP_IN_TRANSFERS = 4, HP_IN_TRANSFERS_MAX = 32 };
 
 typedef struct hp_queue hp_queue;
 typedef struct hp_command hp_command;
@@ -49,6 +49,7 @@ struct hp_command {
     uint64_t told;     /* records that its answers told of since it was last sent, taken or not */
     hp_transfer transfer;
     bool sending; /* the transport holds the transfer */
+    bool unsent;  /* it did not get to the board, as far as the transport knows: no answer is awaited */
 };
 
 /* What the queue went through, for reports and tests. */
@@ -63,6 +64,8 @@ struct hp_queue {
     hp_transport *transport;
     hp_message *message;
     unsigned timeout_ms, retries;
+    bool (*tick)(void *context); /* called some tens of times a second in long waits; false: the call is cancelled */
+    void *tick_context;
     size_t payload_max; /* most payload bytes of a packet on this link */
     hp_link_counts counts;
 
@@ -75,6 +78,7 @@ struct hp_queue {
     uint32_t expected, limit; /* what the board last said */
 
     hp_status fault;   /* why the queue goes back; HP_OK: it does not */
+    hp_status stuck;   /* why a command was not sent: the queue goes back when all before it are answered */
     bool guessing;     /* after silence: `expected` may be behind the board's */
     unsigned tries;    /* goings back since something was last taken */
     uint64_t deadline; /* monotonic milliseconds */
@@ -83,13 +87,16 @@ struct hp_queue {
     hp_status failure; /* of the present call */
     bool disconnected;
 
-    hp_transfer in[HP_IN_TRANSFERS];
-    hp_transfer *arrived[HP_IN_TRANSFERS]; /* completed, in order, not yet looked at */
+    bool borrows; /* the bytes of transfers are the transport's own */
+    unsigned ins;
+    hp_transfer in[HP_IN_TRANSFERS_MAX];
+    bool idle[HP_IN_TRANSFERS_MAX];            /* the transport did not take it: to be submitted again */
+    hp_transfer *arrived[HP_IN_TRANSFERS_MAX]; /* completed, in order, not yet looked at */
     unsigned arrivals;
 };
 
 /* An open link with a window of one. HP_ERROR_MEMORY, or what the transport says. The transport stays the caller's,
- * and is to be closed before hp_queue_close frees the buffers. */
+ * and is to be closed before hp_queue_close frees the buffers that are not the transport's own. */
 hp_status hp_queue_open(hp_queue *queue, hp_transport *transport, hp_message *message, unsigned timeout_ms,
                         unsigned retries);
 void hp_queue_close(hp_queue *queue);

@@ -44,11 +44,13 @@ static hp_status take_reply(hp_command *command, const uint8_t *payload, uint32_
 
 static void accept_reply(hp_device *device, const reply *from) {
     hp_identity said = from->said;
-    said.target = device->identity.target;
-    said.engine = device->identity.engine;
-    said.isa = device->identity.isa;
+    const hp_identity *known = &device->identity;
+    said.target = known->target;
+    said.engine = known->engine;
+    said.isa = known->isa;
+    memcpy(said.serial, known->serial, sizeof said.serial);
     device->identity = said;
-    unsigned window = device->in_flight ? device->in_flight : said.packet_buffers;
+    unsigned window = device->def.in_flight ? device->def.in_flight : said.packet_buffers;
     if (window > said.packet_buffers) window = said.packet_buffers;
     if (window > HP_WINDOW_MAX) window = HP_WINDOW_MAX;
     size_t payload_max = device->queue.payload_max;

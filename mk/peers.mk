@@ -17,6 +17,9 @@ $(PEERS): $(PEERS_OBJ) $(SUPPORT_OBJ) $(LIB)
 	$(call say,LD)
 	$(run)$(CXX) $^ -o $@ $(PEERS_LIBS) $(LIBS_TEST) $(LIBS_LIB)
 
+# A program that is there must be of today: test_peers.sh asks it.
+tests: $(wildcard $(PEERS))
+
 peers: ## install FCL, ODE, Bullet and libccd; print how hitpipe agrees with them, and how fast each is
 	@mk/deps.sh $(PACKAGES_PEERS)
 	@$(MAKE) $(PEERS)

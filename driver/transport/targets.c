@@ -1,5 +1,7 @@
 #include "targets.h"
+#include "usb.h"
 #include <hitpipe/pipe.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,7 +32,18 @@ static hp_status open_null(hp_transport **transport, hp_message *message) {
 hp_status hp_target_open(const hp_device_def *def, hp_transport **transport, hp_message *message) {
     if (!def->target || strcmp(def->target, "model") == 0) return open_model(def, transport, message);
     if (strcmp(def->target, "null") == 0) return open_null(transport, message);
-    return hp_say(message, HP_ERROR_NO_DEVICE, "no target \"%.60s\": there are model and null", def->target);
+    if (strcmp(def->target, "usb") == 0) return hp_transport_usb(def, NULL, transport, message);
+    if (strncmp(def->target, "usb:", 4) == 0) return hp_transport_usb(def, def->target + 4, transport, message);
+    return hp_say(message, HP_ERROR_NO_DEVICE, "no target \"%.60s\": there are model, usb, usb:SERIAL and null",
+                  def->target);
+}
+
+void hp_target_again(hp_transport *transport, const hp_device_def *def, char *target, size_t room) {
+    const char *serial = hp_transport_usb_serial(transport);
+    if (serial && serial[0])
+        snprintf(target, room, "usb:%s", serial);
+    else
+        snprintf(target, room, "%s", def->target ? def->target : "model");
 }
 
 void hp_target_identify(hp_transport *transport, const hp_device_def *def, hp_identity *identity) {
@@ -38,4 +51,6 @@ void hp_target_identify(hp_transport *transport, const hp_device_def *def, hp_id
     identity->target = transport->ops->name;
     identity->engine = !board ? "hardware" : def->clocked ? "clocked" : "quick";
     identity->isa = board ? hp_board_isa(board) : "";
+    const char *serial = hp_transport_usb_serial(transport);
+    snprintf(identity->serial, sizeof identity->serial, "%s", serial ? serial : "");
 }

@@ -10,7 +10,10 @@
 /* Opens def->target. On success *transport is the caller's to close. Errors as hp_open, with words in *message. */
 hp_status hp_target_open(const hp_device_def *def, hp_transport **transport, hp_message *message);
 
-/* Fills in target, engine and isa. */
+/* The target that names the board behind this transport again, and no other: "usb" becomes "usb:SERIAL". */
+void hp_target_again(hp_transport *transport, const hp_device_def *def, char *target, size_t room);
+
+/* Fills in target, engine, isa and serial. */
 void hp_target_identify(hp_transport *transport, const hp_device_def *def, hp_identity *identity);
 
 #endif

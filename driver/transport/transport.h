@@ -1,4 +1,4 @@
-/* A transport moves whole packets between the driver and a board. Each kind (null, model, later usb) fills one
+/* A transport moves whole packets between the driver and a board. Each kind (null, model, usb) fills one
  * vtable; several may be open at a time. The shape is libusb's asynchronous interface: submit a transfer, poll for
  * completions, cancel; so a USB transport needs no adapter, and an in-process one no thread.
  *
@@ -25,10 +25,13 @@ struct hp_transfer {
     size_t moved;     /* set before `done`: bytes sent or received */
     hp_status status; /* set before `done` */
     void (*done)(hp_transfer *transfer);
-    void *owner;       /* the submitter's own */
-    bool in;           /* set by submit */
-    void *private;     /* the transport's own while it holds the transfer */
-    hp_transfer *next; /* the transport's own */
+    void *owner; /* the submitter's own */
+    bool in;     /* set by submit */
+    /* The transport's own, while it holds the transfer. */
+    hp_transfer *next;
+    size_t begun;    /* of the bytes: handed on */
+    unsigned pieces; /* that they are under way in */
+    bool cancelled;
 };
 
 typedef struct hp_transport hp_transport;
@@ -40,11 +43,21 @@ typedef struct hp_transport_ops {
     hp_status (*submit_in)(hp_transport *transport, hp_transfer *transfer);
     hp_status (*cancel)(hp_transport *transport, hp_transfer *transfer);
     /* Runs what can complete; waits up to timeout_ms (0: not at all) for the first completion. HP_OK with *completed
-     * the number of `done` calls made, HP_ERROR_TIMEOUT when there was none, HP_ERROR_DISCONNECTED, HP_ERROR_IO. An
-     * in-process board that has nothing under way reports HP_ERROR_TIMEOUT at once: waiting would bring nothing. */
+     * the number of `done` calls made, which may be 0 when something else ended the wait early, such as a signal;
+     * HP_ERROR_TIMEOUT when there was none, HP_ERROR_DISCONNECTED, HP_ERROR_IO. */
     hp_status (*poll)(hp_transport *transport, unsigned timeout_ms, unsigned *completed);
+    /* Whether poll waits in earnest. An in-process board does not: when it has nothing under way, poll says
+     * HP_ERROR_TIMEOUT at once, since waiting would bring nothing. */
+    bool waits;
     /* Largest packet the link takes in one transfer. */
     size_t (*transfer_max)(const hp_transport *transport);
+    /* How an IN transfer gets such a packet: the room it needs, and how many of them keep the link busy. NULL:
+     * transfer_max, and 4. */
+    size_t (*in_room)(const hp_transport *transport);
+    unsigned (*in_transfers)(const hp_transport *transport);
+    /* Memory for the bytes of transfers, where the link reaches it without a copy if there is such memory; close
+     * frees it. NULL function: malloc does as well. NULL: no memory. */
+    uint8_t *(*allocate)(hp_transport *transport, size_t bytes);
     /* Completes what is pending with HP_ERROR_CANCELLED and frees the transport. */
     void (*close)(hp_transport *transport);
 } hp_transport_ops;

@@ -9,6 +9,7 @@
 #include "host/import/fault.h"
 #include "host/output/progress.h"
 
+#include <hitpipe/control.h>
 #include <hitpipe/hitpipe.h>
 
 #include <argp.h>
@@ -20,7 +21,7 @@
 
 typedef struct hp_cli {
     const char *verb;     /* "hitpipe trace" */
-    hp_device_def device; /* --target, --board, --engine, --isa, --threads */
+    hp_device_def device; /* --target, --reconnect, --usb-..., --board, --engine, --isa, --threads */
     const char *report;   /* --report */
     const char *vcd_path; /* --vcd */
     bool json;            /* --json */
@@ -32,9 +33,15 @@ typedef struct hp_cli {
 /* The options above, for argp_child. Wrong values end the program with status 2 or, for a board, 3. */
 extern const struct argp hp_cli_argp;
 
+/* For verbs of the control plane, in its place: --target usb[:SERIAL], --usb-id and --json alone. */
+extern const struct argp hp_cli_control_argp;
+
 hp_cli hp_cli_begin(const char *verb);
 
-/* Opens the board that the options name. The progress bar shows the driver's progress.
+/* Opens the control plane of the board that the options name. Errors as hp_control_open. */
+hp_status hp_cli_control_open(const hp_cli *cli, hp_control **control, hp_fault *fault);
+
+/* Opens the board that the options name. The progress bar shows the driver's progress; Ctrl-C cancels its calls.
  * Errors as hp_open; HP_ERROR_IO: the waveform cannot be written. */
 hp_status hp_cli_open(hp_cli *cli, hp_device **device, hp_fault *fault);
 

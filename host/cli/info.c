@@ -1,5 +1,6 @@
 /* hitpipe info: the boards there are, the knobs of one, and what its pipes are made of. */
 #include "host/cli/pair.h"
+#include "host/cli/plugged.h"
 #include "host/output/file.h"
 #include "host/output/report.h"
 
@@ -155,21 +156,30 @@ static void print_config(const hp_config *board) {
 
 /* ---- boards ---- */
 
+static void print_link(const hp_config *config) {
+    printf("link       %s duplex, %.4g MB/s to the board, %.4g MB/s to the host, %.4g us a transfer\n",
+           config->link_duplex ? "full" : "half", (double)config->link_to_board_rate / 1e6,
+           (double)config->link_to_host_rate / 1e6, (double)config->link_turnaround_ns / 1e3);
+}
+
 static void print_board(const hp_device *device, const hp_config *config) {
     const hp_identity *board = hp_identify(device);
     char names[512], count[HP_COUNT_TEXT];
     hp_cli_pair_names(board->pairs, names, sizeof names);
-    printf("target     %s\nboard      %s, protocol %u\nengine     %s, arithmetic on %s\n", board->target, board->name,
-           board->version, board->engine, board->isa);
+    bool simulated = board->isa[0];
+    printf("target     %s\nboard      %s, protocol %u\nengine     %s%s%s\n", board->target, board->name,
+           board->version, board->engine, simulated ? ", arithmetic on " : "", board->isa);
     printf("clock      %.6g MHz, lanes: %u, %s, subnormals %s\n", (double)board->clock_hz / 1e6, board->lanes,
            board->loop_order == HP_PRIMARY_OUTER ? "primary-outer" : "secondary-outer",
            board->subnormals == HP_FLUSH ? "flushed" : "gradual");
     printf("packets    %u primaries, %u on the board at a time\n", board->packet_primaries, board->packet_buffers);
     printf("memory     %s MiB for secondaries\n", hp_cli_count(board->ddr_bytes >> 20, count));
-    printf("link       %s duplex, %.4g MB/s to the board, %.4g MB/s to the host, %.4g us a transfer\n",
-           config->link_duplex ? "full" : "half", (double)config->link_to_board_rate / 1e6,
-           (double)config->link_to_host_rate / 1e6, (double)config->link_turnaround_ns / 1e3);
-    printf("pipes      %s\n\nPresets for --board:", names);
+    if (simulated) print_link(config);
+    printf("pipes      %s\n", names);
+}
+
+static void print_presets(void) {
+    fputs("\nPresets for --board:", stdout);
     for (unsigned i = 0; hp_config_preset_name(i); i++) printf("%s %s", i ? "," : "", hp_config_preset_name(i));
     fputs(". `hitpipe info --pipes` shows what a pipe costs, `--config` every knob.\n", stdout);
 }
@@ -202,16 +212,33 @@ static hp_status write_report(hp_device *device, const char *path, hp_fault *fau
     return status;
 }
 
+static hp_status show_json(const hp_device *device, const hp_plugged *plugged, hp_fault *fault) {
+    json_t *boards = json_pack("[o]", board_json(device));
+    hp_plugged_json(plugged, boards);
+    hp_status status = hp_report_write(boards, "-", fault);
+    json_decref(boards);
+    return status;
+}
+
+/* The board that is the target, and all that are plugged in. */
+static hp_status show_all(info_options *info, const hp_device *device, hp_fault *fault) {
+    hp_plugged plugged;
+    hp_status status = hp_plugged_find(&info->cli, &plugged, fault);
+    if (status == HP_OK && info->cli.json) {
+        status = show_json(device, &plugged, fault);
+    } else if (status == HP_OK) {
+        print_board(device, &info->cli.device.board);
+        hp_plugged_print(&info->cli, &plugged);
+        print_presets();
+    }
+    hp_plugged_free(&plugged);
+    return status;
+}
+
 static hp_status show_boards(info_options *info, hp_fault *fault) {
     hp_device *device;
     hp_status status = hp_cli_open(&info->cli, &device, fault);
-    if (status == HP_OK && info->cli.json) {
-        json_t *boards = json_pack("[o]", board_json(device));
-        status = hp_report_write(boards, "-", fault);
-        json_decref(boards);
-    } else if (status == HP_OK && !info->cli.taken) {
-        print_board(device, &info->cli.device.board);
-    }
+    if (status == HP_OK && (info->cli.json || !info->cli.taken)) status = show_all(info, device, fault);
     if (status == HP_OK && info->cli.report) status = write_report(device, info->cli.report, fault);
     hp_status closed = hp_cli_close(&info->cli, device, status == HP_OK ? fault : &(hp_fault){0});
     return status == HP_OK ? closed : status;

@@ -36,6 +36,8 @@ static hp_status fill(hp_board *board, const hp_board_def *def) {
     board->inbound_end = &board->inbound;
     board->held_end = &board->held;
     board->answers_end = &board->answers;
+    board->next_clock_hz = def->config.clock_hz;
+    hp_health_reset(board);
     board->packet = malloc(hp_packet_bytes(HP_PAYLOAD_MAX));
     if (!board->packet) return HP_ERROR_MEMORY;
     read_transformer_costs(board);
@@ -56,27 +58,12 @@ hp_status hp_board_create(const hp_board_def *def, hp_board **board) {
     return status;
 }
 
-/* Frees a chain of structs whose first member is `next`. */
-static void free_chain(void *chain) {
-    while (chain) {
-        void *next = *(void **)chain;
-        free(chain);
-        chain = next;
-    }
-}
-
 void hp_board_destroy(hp_board *board) {
     if (!board) return;
-    if (board->state) board->engine->destroy(board);
-    free_chain(board->inbound);
-    free_chain(board->held);
-    while (board->answers) {
-        hp_answer *next = board->answers->next;
-        hp_answer_free(board->answers);
-        board->answers = next;
+    if (board->state) {
+        hp_board_reset(board);
+        board->engine->destroy(board);
     }
-    hp_query_release(board->query);
-    hp_ddr_free(&board->ddr);
     free(board->packet);
     free(board);
 }
@@ -154,6 +141,9 @@ hp_board_event hp_board_step(hp_board *board) {
 
 hp_counters hp_board_counters(const hp_board *board) {
     return board->counters;
+}
+uint64_t hp_board_clock(const hp_board *board) {
+    return board->clock;
 }
 const char *hp_board_isa(const hp_board *board) {
     return board->isa;

@@ -4,6 +4,7 @@ void hp_board_count(hp_board *board, hp_busy busy, uint64_t clocks) {
     hp_counters *counters = &board->counters;
     bool query = busy.command && board->command.opcode == HP_OPCODE_QUERY;
     counters->clocks_total += clocks;
+    if (busy.command) board->busy_clocks += clocks;
     if (busy.to_board) counters->clocks_link_to_board += clocks;
     if (busy.to_host) counters->clocks_link_to_host += clocks;
     if (busy.decoder) counters->clocks_decoder += clocks;

@@ -51,6 +51,10 @@ struct hp_board {
     uint8_t *packet;                   /* HP_BOARD_SENT: the bytes */
     bool sent, received;               /* events of the present clock that the host has not seen */
     size_t sent_bytes;
+    uint64_t next_clock_hz; /* from the next HELLO on */
+    hp_health health;
+    uint64_t busy_clocks;                   /* clocks in which a command was carried out, since power-up */
+    uint64_t warmed_at, warmed_busy_clocks; /* clock and busy_clocks that health.celsius is of */
 };
 
 /* The times of the query's pipe, with what it was asked for. Read when a pipe is first used: a pipe that is not used
@@ -74,6 +78,8 @@ void hp_board_answered(hp_board *board);
 void hp_command_begin(hp_board *board);
 /* Ends it: the answer becomes known, counters are cleared, the packet's buffer is free. */
 void hp_command_end(hp_board *board);
+/* Forgets the oldest packet held. */
+void hp_held_drop(hp_board *board);
 /* There is no memory to carry out the query: the command becomes an ERROR. */
 void hp_query_refuse(hp_board *board);
 /* Objects in an UPLOAD's payload, and its first. */
@@ -82,6 +88,10 @@ uint32_t hp_upload_first(const hp_command *command);
 
 /* Makes a RESULT with records [first, first + count) of the present query known to the link. */
 void hp_result_known(hp_board *board, uint64_t first, uint32_t count, bool last);
+
+/* ---- health ---- */
+
+void hp_health_reset(hp_board *board);
 
 /* ---- counting ---- */
 

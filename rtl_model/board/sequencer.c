@@ -54,6 +54,7 @@ void hp_command_begin(hp_board *board) {
     switch (command->opcode) {
     case HP_OPCODE_HELLO:
         board->session = (hp_session){.open = true};
+        board->config.clock_hz = board->next_clock_hz;
         break;
     case HP_OPCODE_UPLOAD:
         status = begin_upload(board);
@@ -72,6 +73,7 @@ void hp_command_begin(hp_board *board) {
         command->status = status;
     }
     if (command->advances) board->session.expected++;
+    board->health.packets += command->advances;
 }
 
 /* Out of memory, the answer is lost like any other packet may be: the host asks again. */
@@ -98,6 +100,9 @@ void hp_result_known(hp_board *board, uint64_t first, uint32_t count, bool last)
 }
 
 static void answer_error(hp_board *board) {
+    board->health.refused++;
+    board->health.crc += board->command.status == HP_ERROR_CRC;
+    board->health.sequence += board->command.status == HP_ERROR_SEQUENCE;
     hp_answer *answer = answer_with(board, HP_OPCODE_ERROR, true);
     if (answer) {
         answer->header.status = (uint16_t)board->command.status;
@@ -121,15 +126,6 @@ static void answer_counters(hp_board *board) {
     if (hp_get32(board->command.payload + HP_AT_COUNTERS_clear)) board->counters = (hp_counters){0};
 }
 
-static void drop_held(hp_board *board) {
-    hp_held *held = board->held;
-    board->held = held->next;
-    if (!board->held) board->held_end = &board->held;
-    board->held_count--;
-    board->buffers_taken -= !held->lost;
-    free(held);
-}
-
 void hp_command_end(hp_board *board) {
     switch (board->command.opcode) {
     case HP_OPCODE_HELLO:
@@ -151,5 +147,5 @@ void hp_command_end(hp_board *board) {
         answer_error(board);
         break;
     }
-    drop_held(board);
+    hp_held_drop(board);
 }

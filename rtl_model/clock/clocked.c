@@ -362,6 +362,25 @@ static hp_status clocked_settle(hp_board *board) {
     return HP_OK;
 }
 
+static bool clocked_executing(const hp_board *board) {
+    return ((const hp_clocked *)board->state)->activity != HP_ACTIVITY_NONE;
+}
+
+static void clocked_drop_waiting(hp_board *board) {
+    hp_clocked *c = board->state;
+    c->channel[HP_TO_BOARD].busy = false;
+    c->decoding = false;
+    c->decoded = 0;
+}
+
+static void clocked_reset(hp_board *board) {
+    hp_clocked *c = board->state;
+    clocked_drop_waiting(board);
+    c->channel[HP_TO_HOST].busy = false;
+    c->activity = HP_ACTIVITY_NONE;
+    c->sram.count = 0;
+}
+
 static hp_status clocked_create(hp_board *board) {
     hp_clocked *c = calloc(1, sizeof *c);
     if (!c) return HP_ERROR_MEMORY;
@@ -381,4 +400,5 @@ static void clocked_destroy(hp_board *board) {
     free(c);
 }
 
-const hp_engine hp_engine_clocked = {clocked_create, clocked_destroy, clocked_run, clocked_records, clocked_settle};
+const hp_engine hp_engine_clocked = {clocked_create, clocked_destroy,   clocked_run,          clocked_records,
+                                     clocked_settle, clocked_executing, clocked_drop_waiting, clocked_reset};

@@ -19,6 +19,13 @@ typedef struct hp_engine {
     void (*records)(hp_board *board, const struct hp_answer *answer, uint8_t *bytes);
     /* The scene is about to change: answers that still wait for the link must not see it. */
     hp_status (*settle)(hp_board *board);
+    /* Whether a command is carried out: that of the oldest packet held. */
+    bool (*executing)(const hp_board *board);
+    /* The decoder and the link to the board have nothing under way any more: the board drops the packets whose
+     * commands have not begun. */
+    void (*drop_waiting)(hp_board *board);
+    /* Nothing is under way any more, but the memory's refresh. */
+    void (*reset)(hp_board *board);
 } hp_engine;
 
 extern const hp_engine hp_engine_quick, hp_engine_clocked;

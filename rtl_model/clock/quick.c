@@ -234,6 +234,25 @@ static hp_status quick_settle(hp_board *board) {
     return HP_OK;
 }
 
+static bool quick_executing(const hp_board *board) {
+    return ((const quick *)board->state)->executing;
+}
+
+static void quick_drop_waiting(hp_board *board) {
+    quick *q = board->state;
+    q->channel[HP_TO_BOARD].busy = false;
+    q->decoding = false;
+    q->decoded = 0;
+}
+
+static void quick_reset(hp_board *board) {
+    quick *q = board->state;
+    quick_drop_waiting(board);
+    q->channel[HP_TO_HOST].busy = false;
+    q->executing = false;
+    q->sram = 0;
+}
+
 static hp_status quick_create(hp_board *board) {
     quick *q = calloc(1, sizeof *q);
     if (!q) return HP_ERROR_MEMORY;
@@ -248,4 +267,5 @@ static void quick_destroy(hp_board *board) {
     free(q);
 }
 
-const hp_engine hp_engine_quick = {quick_create, quick_destroy, quick_run, quick_records, quick_settle};
+const hp_engine hp_engine_quick = {quick_create, quick_destroy,   quick_run,          quick_records,
+                                   quick_settle, quick_executing, quick_drop_waiting, quick_reset};

@@ -20,7 +20,9 @@
 
 /* A loop over copies of hardware side by side, i from `from` to less than `to`. It vanishes, so that what i indexes
  * lives in registers; compilers leave loops in loops alone when their bodies are as long as a pipe's. */
-#ifdef __clang__
+#ifdef HP_CALLED
+#define HP_EACH(i, from, to) for (unsigned i = (from); i < (to); i++)
+#elif defined __clang__
 #define HP_EACH(i, from, to) _Pragma("unroll") for (unsigned i = (from); i < (to); i++)
 #else
 #define HP_EACH(i, from, to) _Pragma("GCC unroll 32") for (unsigned i = (from); i < (to); i++)

@@ -19,11 +19,7 @@
 #endif
 
 /* A loop over the words of an object, which must vanish so that the words live in registers. */
-#ifdef __clang__
-#define foreach(w, n) _Pragma("unroll") for (unsigned w = 0; w < (n); w++)
-#else
-#define foreach(w, n) _Pragma("GCC unroll 32") for (unsigned w = 0; w < (n); w++)
-#endif
+#define foreach(w, n) HP_EACH (w, 0, n)
 #define HP_CHUNK (HP_VECTORS * HP_LANES)
 
 /* Words of each pipe's objects: ray_triangle_primary_words is 6. */

@@ -42,6 +42,13 @@ status 2 "an ISA that is none" "$h" info --isa mmx
 status 2 "HP_ISA that is none" env HP_ISA=mmx "$h" info
 status 0 "HP_ISA that is empty" env HP_ISA= "$h" info
 status 4 "a target that is none" "$h" info --target moon
+says "a target that is none" 'there are model, usb, usb:SERIAL and null'
+status 4 "no board on USB" "$h" info --target usb --usb-id fFfF:0
+says "no board on USB" 'no board on USB with the identifiers ffff:0000$'
+for id in 1209 1209:0001: 1209:x 0x1209:1 :1 1209:-1 12090:1 1209:00001 ''; do status 2 "USB id '$id'" "$h" info --usb-id "$id"; done
+for depth in 0 33 4x ''; do status 2 "USB depth '$depth'" "$h" info --usb-depth "$depth"; done
+for bytes in 1000 16778240 -1024; do status 2 "USB transfer '$bytes'" "$h" info --usb-transfer "$bytes"; done
+for seconds in -1 1.5 86401; do status 2 "reconnect '$seconds'" "$h" info --reconnect "$seconds"; done
 status 2 "trace without scene" "$h" trace
 status 2 "trace with two scenes" "$h" trace a.obj b.obj
 status 2 "query without pair" "$h" query -p a -s b
@@ -87,6 +94,21 @@ status 0 "info --config --json" "$h" info --config --json
 says "a knob" '"key": "lanes"'
 status 4 "info to a full disk" sh -c "'$h' info --config >/dev/full"
 says "by its name" 'standard output: cannot be written: No space left'
+
+# ---- verbs of the control plane; test_umockdev has boards for them ----
+for verb in reset watch; do
+    status 0 "$verb --help" "$h" $verb --help
+    says "$verb --help" "Usage: hitpipe $verb"
+    status 2 "$verb of something" "$h" $verb it
+    status 2 "$verb --engine" "$h" $verb --engine quick
+    for target in model null usb: usb3 ''; do
+        status 2 "$verb --target '$target'" "$h" $verb --target "$target"
+        says "$verb --target '$target'" "usb or usb:SERIAL here, not '$target'"
+    done
+done
+for hz in 0 -1 1e8 '' 99999999999999999999; do status 2 "a clock of '$hz'" "$h" reset --clock "$hz"; done
+for count in 0 -1 many ''; do status 2 "a count of '$count'" "$h" watch --count "$count"; done
+for seconds in 0 -1 nan long '' 1e10; do status 2 "'$seconds' seconds" "$h" watch --seconds "$seconds"; done
 
 # ---- query ----
 cat >"$work/rays.csv" <<END

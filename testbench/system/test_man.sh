@@ -22,7 +22,9 @@ check "the common options are found" grep -qx board "$work/common"
 for verb in $(sed -nE 's/^HP_VERB\(([a-z_]+),.*/\1/p' host/cli/verbs.def); do
     check "a page for $verb" test -s "docs/man/hitpipe-$verb.1"
     options_of_help "$verb" >"$work/help"
-    options_of_page "docs/man/hitpipe-$verb.1" | sort -u - "$work/common" >"$work/page"
+    options_of_page "docs/man/hitpipe-$verb.1" >"$work/own"
+    cp "$work/own" "$work/page"
+    if grep -q 'options of every verb' "docs/man/hitpipe-$verb.1"; then sort -u "$work/own" "$work/common" >"$work/page"; fi
     check "$verb: --help and the page have the same options" diff "$work/help" "$work/page"
     check "hitpipe.1 names $verb" grep -q "^\.It Cm $verb" docs/man/hitpipe.1
     check "hitpipe --help names $verb" sh -c "'$HITPIPE' --help | grep -q '^  $verb '"

@@ -58,8 +58,26 @@ static void opening_names_what_is_wrong(void **state) {
     def.timeout_ms = 0;
     refuses_to_open(&def, HP_ERROR_USAGE, "timeout_ms");
     def = small_def();
+    def.target = "moon";
+    refuses_to_open(&def, HP_ERROR_NO_DEVICE, "no target \"moon\": there are model, usb, usb:SERIAL and null");
     def.target = "usb";
-    refuses_to_open(&def, HP_ERROR_NO_DEVICE, "\"usb\"");
+    def.usb_product = 0xFFFF; /* nobody's */
+    refuses_to_open(&def, HP_ERROR_NO_DEVICE, "no board on USB with the identifiers 1209:ffff");
+    def.target = "usb:HP1";
+    refuses_to_open(&def, HP_ERROR_NO_DEVICE, "1209:ffff and the serial number HP1");
+    def.usb_depth = 0;
+    refuses_to_open(&def, HP_ERROR_USAGE, "usb_depth is 0");
+    def.usb_depth = HP_USB_DEPTH_MAX + 1;
+    refuses_to_open(&def, HP_ERROR_USAGE, "usb_depth is 33");
+    def.usb_depth = 1;
+    def.usb_transfer = 1000;
+    refuses_to_open(&def, HP_ERROR_USAGE, "usb_transfer is 1000");
+    def.usb_transfer = HP_USB_TRANSFER_MAX + 1024;
+    refuses_to_open(&def, HP_ERROR_USAGE, "usb_transfer is 16778240");
+    def.usb_transfer = 0;
+    def.usb_vendor = 0x10000;
+    refuses_to_open(&def, HP_ERROR_USAGE, "16 bits");
+    def = small_def();
     def = small_def();
     def.board.lanes = 65;
     refuses_to_open(&def, HP_ERROR_CONFIG, "lanes = 65 is not allowed: 1 to 64");

@@ -17,7 +17,11 @@ no_match "the model knows no driver and no host" '#include [<"](driver|host)/|hi
 no_match "the model knows no files and no other library" '#include <(stdio|jansson|png|openexr|argp|assimp|libusb)|\bfopen\(' \
     ':(glob)rtl_model/**/*.h' ':(glob)rtl_model/[!bc]*/*.c'
 no_match "the driver knows no host and no command line" '#include [<"](host)/|#include <(argp|jansson|png|openexr|assimp)' driver
-no_match "only the model transport sees the board" 'hitpipe/board\.h' ':(glob)driver/*.c' ':(glob)driver/*.h' host
+no_match "only the model transport and the USB device side see the board" 'hitpipe/board\.h' ':(glob)driver/*.c' ':(glob)driver/*.h' \
+    driver/hid host
+no_match "the USB device side knows no driver" '#include [<"](driver/(transport|hid|[a-z_]+\.h)|hitpipe/hitpipe\.h|libusb|hidapi)' \
+    driver/gadget driver/usbip
+no_match "the gadget knows no cable" '#include [<"](sys/socket|netinet|arpa|netdb|poll|unistd|fcntl|linux)' driver/gadget
 no_match "the library never prints" '\b(printf|puts|perror|fprintf)\(' ':(glob)rtl_model/**' ':(glob)driver/**'
 no_match "no path of a machine, no host name" '(^|[^a-z.])/(work|home|root|Users)/|https?://[a-z.]*(debian|registry)' .
 report

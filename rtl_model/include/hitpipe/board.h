@@ -1,6 +1,8 @@
-/* The simulated board, as its link sees it: bytes in, bytes out, and a clock.
+/* The simulated board, as its link sees it: bytes in, bytes out, and a clock; and what a control plane beside the
+ * link does to it.
  *
- * Only the model transport (and later the USB/IP server) include this. One thread at a time per board. */
+ * Only the model transport and the USB device side (driver/gadget/, driver/usbip/) include this. One thread at a time
+ * per board. */
 #ifndef HITPIPE_BOARD_H
 #define HITPIPE_BOARD_H
 
@@ -55,9 +57,43 @@ hp_status hp_board_send(hp_board *board, const void *bytes, size_t n);
  */
 hp_board_event hp_board_step(hp_board *board);
 
-/* Present counters, and the ISA in use ("avx512"). */
+/* Present counters, the clock that they are of, and the ISA in use ("avx512"). */
 hp_counters hp_board_counters(const hp_board *board);
+uint64_t hp_board_clock(const hp_board *board);
 const char *hp_board_isa(const hp_board *board);
+
+/* ---- beside the link ---- */
+
+/* Puts the board in reset, as after power-up but for its clock, its memory's refresh, hp_health and the clock that
+ * hp_board_set_clock chose: what is under way is dropped; session, scene, matrix and counters are forgotten.
+ * Transfers of hp_board_send that have not crossed the link, or whose HP_BOARD_RECEIVED was not returned yet, are
+ * dropped too: their bytes may be reused, and no event comes for them. */
+void hp_board_reset(hp_board *board);
+
+/* Drops, unanswered, the packets whose commands have not begun, and the transfers as hp_board_reset does. The command
+ * under way goes on, and so does the session: to the host the packets are lost on the way. */
+void hp_board_abort(hp_board *board);
+
+/* The core clock from the next HELLO on. HP_ERROR_FIELD: out of the range of clock_hz in config.def. HP_ERROR_USAGE:
+ * a waveform is being written, which has one clock. On error the clock stays what it was to be. */
+hp_status hp_board_set_clock(hp_board *board, uint64_t hz);
+
+/* The board's configuration, with the clock in use. */
+const hp_config *hp_board_config(const hp_board *board);
+
+/* Counted since power-up, over resets and sessions. */
+typedef struct hp_health {
+    bool session;      /* a HELLO was taken since power-up or reset */
+    double celsius;    /* of the FPGA */
+    uint64_t packets;  /* taken, as docs/protocol.md has it */
+    uint64_t refused;  /* answered with ERROR */
+    uint64_t crc;      /* of those: ERROR CRC */
+    uint64_t sequence; /* of those: ERROR SEQUENCE */
+} hp_health;
+
+/* The temperature is that of a chip that warms from 35 degrees towards 65 by the share of clocks in which commands
+ * were carried out since the last call, with a time constant of a second of board time. */
+hp_health hp_board_health(hp_board *board);
 
 #ifdef __cplusplus
 }
