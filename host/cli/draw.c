@@ -148,9 +148,18 @@ static bool measure_ends(const draw_scene *scene, const hp_contact *contact, hp_
 
 /* ---- where the viewer stands ---- */
 
+/* How well a box is seen, up to 1: three faces of it. */
+static double box_clearness(const float *words, hp_vector toward) {
+    double least = 1;
+    for (int i = 6; i < 15; i += 3)
+        least = fmin(least, fabs(hp_vector_dot((hp_vector){words[i], words[i + 1], words[i + 2]}, toward)));
+    return fmin(1, least / 0.2);
+}
+
 /* How well a view shows an object's shape, up to 1: a thin one not edge on, a cylinder neither as a disc nor as a
  * rectangle. What is enough is no worse than more. */
 static double clearness(const hp_figure *figure, hp_vector toward) {
+    if (figure->object == HP_OBB) return box_clearness(figure->words, toward);
     double normal[3] = {figure->words[0], figure->words[1], figure->words[2]}; /* a plane's */
     if (figure->object == HP_TRIANGLE) hp_shape_normal(figure->object, figure->words, figure->words, normal);
     if (figure->object == HP_CYLINDER)
@@ -173,9 +182,9 @@ static hp_drawing best_view(const draw_options *draw, const draw_scene *scene, b
     if (!isnan(draw->view[0])) return hp_drawing_begin(draw->view[0], draw->view[1]);
     hp_drawing best = hp_drawing_begin(-60, 24);
     double most = worth(scene, barred, ends, best.toward);
-    for (int turn = 15; turn <= 180; turn += 15) /* from the usual place to either side */
+    for (int turn = 1; turn <= 8; turn++) /* from the usual place to either side, never along an axis */
         for (int side = -1; side <= 1; side += 2) {
-            hp_drawing other = hp_drawing_begin(-60 + side * turn, 24);
+            hp_drawing other = hp_drawing_begin(-60 + side * turn * 22.5, 24);
             double shown = worth(scene, barred, ends, other.toward);
             if (shown <= most + 0.02) continue;
             most = shown;
@@ -217,7 +226,7 @@ static hp_caption caption_of(const draw_options *draw, const hp_contact *contact
     bool ray_hit = objects[0] == HP_RAY && answer->F, shown = isfinite(answer->T) && !ray_hit;
     const char *meaning = !answer->F ? "distance" : ray_hit ? "lengths of the direction" : "penetration depth";
     snprintf(words->answer, sizeof words->answer, "%s: F %d, T %.6g (%s%s)", draw->typed, (int)answer->F,
-             (double)answer->T, meaning, ray_hit || contact->found ? "" : " in no single direction");
+             (double)answer->T, meaning, ray_hit || contact->found || answer->T == 0 ? "" : ", direction unclear");
     snprintf(words->point, sizeof words->point, "CP %.6g, %.6g, %.6g", (double)answer->CP[0], (double)answer->CP[1],
              (double)answer->CP[2]);
     for (int i = 0; i < 2; i++)

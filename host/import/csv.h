@@ -12,8 +12,8 @@ typedef struct hp_objects {
     size_t count, room; /* objects */
 } hp_objects;
 
-/* HP_ERROR_INPUT "file:line:column: ...": not a number, too few or many, an object that hp_object_fault refuses, or
- * none at all. HP_ERROR_MEMORY. On error *objects is empty. The caller frees with hp_objects_free. */
+/* HP_ERROR_INPUT "file:line:column: ...": not a number, too few or many, an object that hp_object_fault refuses, none
+ * at all, or no UTF-8. HP_ERROR_MEMORY. On error *objects is empty. The caller frees with hp_objects_free. */
 hp_status hp_csv_read(const hp_bytes *bytes, hp_object object, hp_objects *objects, hp_fault *fault);
 hp_status hp_csv_load(const char *path, hp_object object, hp_objects *objects, hp_fault *fault);
 

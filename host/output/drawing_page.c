@@ -73,23 +73,37 @@ static void write_head(FILE *file, const char *ink, double x, double y, double d
             y - dy - 0.4 * dx, x - dx - 0.4 * dy, y - dy + 0.4 * dx);
 }
 
-/* A bar with small strokes across its ends; its name stands to the left of its middle. */
-static void write_bar(FILE *file, const page_fit *fit, const hp_stroke *bar, const double (*ends)[2]) {
-    double x = page_x(fit, ends[0]), y = page_y(fit, ends[0]), dx = page_x(fit, ends[1]) - x;
-    double dy = page_y(fit, ends[1]) - y, length = sqrt(dx * dx + dy * dy);
-    double ax = length > 0 ? 5 * dy / length : 5, ay = length > 0 ? -5 * dx / length : 0; /* across */
-    if (ax > 0) ax = -ax, ay = -ay;
-    fprintf(file, "<path class=\"%s bar\" d=\"M%.1f %.1fL%.1f %.1f\"/>", ink_names[bar->ink], x, y, x + dx, y + dy);
-    for (int i = 0; i < 2; i++)
-        fprintf(file, "<path class=\"%s front\" d=\"M%.1f %.1fL%.1f %.1f\"/>", ink_names[bar->ink], x + i * dx + ax,
-                y + i * dy + ay, x + i * dx - ax, y + i * dy - ay);
-    fprintf(file, "<text class=\"name measured\" text-anchor=\"end\" x=\"%.1f\" y=\"%.1f\">%s</text>\n",
-            x + dx / 2 + 1.6 * ax, y + dy / 2 + 1.6 * ay + 4, bar->name);
+/* Five points across a bar, to the side where its name stands: the left. */
+static void across_bar(const page_fit *fit, const double (*ends)[2], double across[2]) {
+    double dx = page_x(fit, ends[1]) - page_x(fit, ends[0]), dy = page_y(fit, ends[1]) - page_y(fit, ends[0]);
+    double length = sqrt(dx * dx + dy * dy), turn = dy > 0 ? -5 : 5;
+    across[0] = length > 0 ? turn * dy / length : -5;
+    across[1] = length > 0 ? -turn * dx / length : 0;
 }
 
-static void write_dot(FILE *file, double x, double y, const char *name) {
+/* A bar with small strokes across its ends; its name stands beside its middle. */
+static void write_bar(FILE *file, const page_fit *fit, const hp_stroke *bar, const double (*ends)[2]) {
+    double x[2], y[2], across[2];
+    across_bar(fit, ends, across);
+    for (int i = 0; i < 2; i++) x[i] = page_x(fit, ends[i]), y[i] = page_y(fit, ends[i]);
+    const char *ink = ink_names[bar->ink];
+    fprintf(file, "<path class=\"%s bar\" d=\"M%.1f %.1fL%.1f %.1f\"/>", ink, x[0], y[0], x[1], y[1]);
+    for (int i = 0; i < 2; i++)
+        fprintf(file, "<path class=\"%s front\" d=\"M%.1f %.1fL%.1f %.1f\"/>", ink, x[i] + across[0],
+                y[i] + across[1], x[i] - across[0], y[i] - across[1]);
+    fprintf(file, "<text class=\"name measured\" text-anchor=\"end\" x=\"%.1f\" y=\"%.1f\">%s</text>\n",
+            (x[0] + x[1]) / 2 + 1.6 * across[0], (y[0] + y[1]) / 2 + 1.6 * across[1] + 4, bar->name);
+}
+
+/* The name stands to the right, and beside a bar on the other side than its. */
+static void write_dot(FILE *file, const hp_drawing *drawing, const page_fit *fit, const hp_stroke *dot) {
+    const double *at = drawing->points[dot->first];
+    double x = page_x(fit, at), y = page_y(fit, at), across[2] = {-4.5, 3};
+    for (size_t i = 0; i < drawing->stroke_count; i++)
+        if (drawing->strokes[i].pen == HP_PEN_BAR)
+            across_bar(fit, (const double(*)[2])(drawing->points + drawing->strokes[i].first), across);
     fprintf(file, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\"/><text class=\"name\" x=\"%.1f\" y=\"%.1f\">%s</text>\n",
-            x, y, x + 7, y - 6, name);
+            x, y, x - 1.8 * across[0], y - 2.4 * across[1] + 4, dot->name);
 }
 
 static void write_line(FILE *file, const page_fit *fit, const hp_stroke *stroke, const double (*points)[2]) {
@@ -103,7 +117,7 @@ static void write_stroke(FILE *file, const hp_drawing *drawing, const page_fit *
     const double(*points)[2] = (const double(*)[2])(drawing->points + stroke->first);
     double x = page_x(fit, points[stroke->count - 1]), y = page_y(fit, points[stroke->count - 1]);
     if (stroke->pen == HP_PEN_DOT)
-        write_dot(file, x, y, stroke->name);
+        write_dot(file, drawing, fit, stroke);
     else if (stroke->pen == HP_PEN_BAR)
         write_bar(file, fit, stroke, points);
     else if (stroke->pen == HP_PEN_HEAD)
@@ -114,9 +128,9 @@ static void write_stroke(FILE *file, const hp_drawing *drawing, const page_fit *
 
 static void write_axes(FILE *file, const hp_drawing *drawing) {
     const hp_vector axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    const double x = PAGE_WIDTH - 44, y = PAGE_HEIGHT - 36;
+    const double x = PAGE_WIDTH - 44, y = PAGE_HEIGHT - 22;
     for (int i = 0; i < 3; i++) {
-        double dx = 24 * hp_vector_dot(axes[i], drawing->right), dy = -24 * hp_vector_dot(axes[i], drawing->up);
+        double dx = 21 * hp_vector_dot(axes[i], drawing->right), dy = -21 * hp_vector_dot(axes[i], drawing->up);
         fprintf(file, "<line class=\"axis\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>", x, y, x + dx, y + dy);
         fprintf(file, "<text class=\"quiet\" x=\"%.1f\" y=\"%.1f\">%c</text>\n", x + 1.3 * dx - 4, y + 1.3 * dy + 4,
                 "xyz"[i]);

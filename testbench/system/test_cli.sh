@@ -196,7 +196,7 @@ for pair in $pairs; do
     check "$pair: the distance in words" grep -q ">$pair: F 0, T [0-9.]* (distance)<" "$work/d.svg"
 done
 status 0 "concentric balls" d sphere-sphere -p "$(object sphere)" -s "$(object sphere)"
-check "no single direction" grep -q 'penetration depth in no single direction' "$work/d.svg"
+check "no single direction" grep -q '(penetration depth, direction unclear)' "$work/d.svg"
 status 2 "draw without files" d sphere-obb
 says "draw without files" '--primary and --secondary are needed'
 status 2 "draw to nowhere" "$h" draw sphere-obb -p a -s b
