@@ -7,12 +7,9 @@ static hp_status take_counters(hp_command *command, const uint8_t *payload, uint
     return HP_OK;
 }
 
-hp_status hp_read_counters(hp_device *device, bool clear, hp_counters *counters) {
+static hp_status ask(hp_device *device, bool clear, hp_counters *counters) {
     hp_command *command;
-    if (!device) return HP_ERROR_USAGE;
-    hp_status status = hp_begin(device);
-    if (!status && !counters) return hp_say(&device->message, HP_ERROR_USAGE, "no place for the counters");
-    if (!status) status = hp_queue_reserve(&device->queue, &command);
+    hp_status status = hp_queue_reserve(&device->queue, &command);
     if (status) return status;
     command->opcode = HP_OPCODE_COUNTERS;
     command->reply = HP_OPCODE_COUNTERS_REPLY;
@@ -22,4 +19,14 @@ hp_status hp_read_counters(hp_device *device, bool clear, hp_counters *counters)
     command->owner = counters;
     hp_put32(command->payload + HP_AT_COUNTERS_clear, clear);
     return hp_ask(device, command);
+}
+
+hp_status hp_read_counters(hp_device *device, bool clear, hp_counters *counters) {
+    if (!device) return HP_ERROR_USAGE;
+    hp_status status = hp_begin(device);
+    if (status) return status;
+    if (!counters) return hp_say(&device->message, HP_ERROR_USAGE, "no place for the counters");
+    do status = ask(device, clear, counters);
+    while (status && hp_recover(device, &status, 0));
+    return status;
 }
