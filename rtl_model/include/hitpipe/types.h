@@ -111,7 +111,8 @@ hp_mode hp_mode_from_name(const char *name);
  * to within 4e-6). Returns NULL when it may, else what is wrong with it ("direction is zero"). */
 const char *hp_object_fault(hp_object object, const float *words);
 
-/* The same of `count` objects, one after another, and quicker: *at is the number of the first that may not be sent. */
+/* The same of `count` objects, one after another, and quicker: *at is the number of the first that may not be sent.
+ */
 const char *hp_objects_fault(hp_object object, const float *words, size_t count, size_t *at);
 
 /* Whether objects of this type can be moved by the 3x4 row-major matrix: triangles by any, an aabb by one that moves
