@@ -250,6 +250,14 @@ void hpt_mock_mute(hpt_device *device, bool mute) {
     pthread_mutex_unlock(&hpt_lock);
 }
 
+void hpt_mock_describe_hid(hpt_device *device, const uint8_t *descriptor, size_t n) {
+    char path[256];
+    pthread_mutex_lock(&hpt_lock);
+    snprintf(path, sizeof path, "/sys%s", hpt_mock_device_of(device)->hid_path);
+    umockdev_testbed_set_attribute_binary(testbed, path, "report_descriptor", (guint8 *)descriptor, (gint)n);
+    pthread_mutex_unlock(&hpt_lock);
+}
+
 static unsigned listeners(const hpt_mock_device *mock) {
     unsigned count = 0;
     const hpt_file *file = mock->device->claims[HP_USB_HID_INTERFACE];

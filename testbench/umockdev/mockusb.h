@@ -47,6 +47,9 @@ void hpt_mock_twist_reports(hpt_device *device, hpt_mock_twist *twist, void *con
  * kernel after 5 seconds. */
 void hpt_mock_mute(hpt_device *device, bool mute);
 
+/* Another report descriptor in sysfs, for who only reads there. Until the HID is bound anew. */
+void hpt_mock_describe_hid(hpt_device *device, const uint8_t *descriptor, size_t n);
+
 /* How many programs fetch input reports: they have the hidraw node open, or by libusb the interface and an urb. */
 unsigned hpt_mock_listeners(hpt_device *device);
 
