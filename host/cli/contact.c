@@ -88,6 +88,7 @@ hp_status hp_contact_find(hp_device *device, hp_pair pair, const float *primary,
     *contact = (hp_contact){.found = false};
     hp_status status = hp_upload(device, hp_pair_secondary(pair), secondary, 1);
     if (status == HP_OK) status = ask(&asking, &(hp_vector){0, 0, 0}, 1, &contact->answer);
+    if (status != HP_OK) return status;
     bool ray_hit = contact->answer.F && asking.object == HP_RAY;
     for (double step = 3e-3 * size; status == HP_OK && !ray_hit && !contact->found && step > 2e-4 * size; step /= 3) {
         hp_vector slope = {0};
@@ -98,5 +99,6 @@ hp_status hp_contact_find(hp_device *device, hp_pair pair, const float *primary,
         if (one_way && !contact->found && pair == HP_PAIR_RAY_TRIANGLE)
             touch_corner(&asking, secondary, size, contact);
     }
-    return status;
+    /* moved, a tiny object may be none any more: a cylinder's caps become one point */
+    return status == HP_ERROR_INPUT ? HP_OK : status;
 }

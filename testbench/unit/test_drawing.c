@@ -171,12 +171,27 @@ static void moving_the_primary_by_the_bar_makes_them_touch(void **state) {
     hp_close(device);
 }
 
+/* Moving it by the smallest step makes its ends one point, which is no cylinder. */
+static void an_object_too_small_to_move_has_no_direction(void **state) {
+    (void)state;
+    static const float speck[] = {0, 0, 0, 0, 0, 1e-12f, 0}, rod_beside[] = {1, 0, -1, 1, 0, 1, 0.5f};
+    hp_device_def def = hp_default_device_def();
+    hp_device *device;
+    hp_contact contact;
+    assert_int_equal(hp_open(&def, &device), HP_OK);
+    assert_int_equal(hp_contact_find(device, HP_PAIR_CYLINDER_CYLINDER, speck, rod_beside, 1, &contact), HP_OK);
+    assert_false(contact.found);
+    assert_true(contact.answer.F == 0 && fabs((double)contact.answer.T - 0.5) < 1e-6);
+    hp_close(device);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(figures_end_where_they_do),
         cmocka_unit_test(a_line_goes_behind_what_hides_it),
         cmocka_unit_test(surfaces_cross_where_they_do),
         cmocka_unit_test(moving_the_primary_by_the_bar_makes_them_touch),
+        cmocka_unit_test(an_object_too_small_to_move_has_no_direction),
     };
     return cmocka_run_group_tests_name("drawing", tests, NULL, NULL);
 }
