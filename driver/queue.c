@@ -236,6 +236,7 @@ static bool all_heard(hp_queue *queue) {
 static hp_status await_link(hp_queue *queue, uint64_t now) {
     const hp_transport_ops *ops = queue->transport->ops;
     unsigned wait = now < queue->deadline ? (unsigned)(queue->deadline - now) : 0, completed;
+    if (queue->stuck && all_heard(queue)) wait = 0; /* there is nothing to wait for */
     bool ticks = queue->tick && ops->waits && !queue->abandoned;
     hp_status status = ops->poll(queue->transport, ticks && wait > TICK_MS ? TICK_MS : wait, &completed);
     if (ticks && !queue->tick(queue->tick_context))

@@ -37,7 +37,6 @@ static hp_status await_board(hp_device *device) {
         pause_for(device, deadline - now < STEP_MS ? (unsigned)(deadline - now) : STEP_MS);
     }
     device->session = false;
-    device->transform_due = device->transformed;
     if (device->scene_words && device->scene) device->scene_lost = device->scene;
     device->scene = (hp_object)0;
     return hp_open_link(device);
