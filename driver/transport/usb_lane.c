@@ -287,7 +287,8 @@ static void collected(hp_usb_slot *slot) {
         *last = slot;
         return;
     }
-    bool nothing = slot->libusb->status == LIBUSB_TRANSFER_CANCELLED && slot->libusb->actual_length == 0;
+    bool nothing = slot->libusb->actual_length == 0 && (slot->libusb->status == LIBUSB_TRANSFER_CANCELLED ||
+                                                        slot->libusb->status == LIBUSB_TRANSFER_NO_DEVICE);
     if (nothing || !lane->queue.first) return;
     while (copy(lane)) continue;
     if (lane->queue.first) end(lane, lane->queue.first, hp_usb_outcome(slot->libusb->status));
@@ -326,10 +327,9 @@ void hp_usb_look(hp_usb *usb) {
     while (usb->into.copies && copy(&usb->into)) continue;
     mend(&usb->out);
     mend(&usb->into);
-    if (usb->gone) {
-        hp_usb_end_all(&usb->out, HP_ERROR_DISCONNECTED);
+    if (usb->gone) hp_usb_end_all(&usb->out, HP_ERROR_DISCONNECTED);
+    if (usb->gone && !(usb->into.copies && usb->into.flying)) /* what flies may still have bytes for them */
         hp_usb_end_all(&usb->into, HP_ERROR_DISCONNECTED);
-    }
     hp_usb_pump(&usb->out);
     hp_usb_pump(&usb->into);
 }

@@ -233,6 +233,7 @@ int hpt_control(hpt_device *device, const uint8_t setup[8], uint8_t *bytes, size
 hpt_bus_counts hpt_counts(hpt_device *device) {
     pthread_mutex_lock(&hpt_lock);
     hpt_bus_counts counts = device->counts;
+    counts.in_flight = device->flying;
     pthread_mutex_unlock(&hpt_lock);
     return counts;
 }

@@ -25,6 +25,22 @@ long hpt_kernel_write(int fd, const void *bytes, size_t n) {
     return syscall(SYS_write, fd, bytes, n);
 }
 
+static _Thread_local unsigned depth; /* of calls that are for the bus */
+
+bool hpt_inside(void) {
+    return depth > 0;
+}
+
+static void enter(void) {
+    depth++;
+    pthread_mutex_lock(&hpt_lock);
+}
+
+static void leave(void) {
+    pthread_mutex_unlock(&hpt_lock);
+    depth--;
+}
+
 static long result(long value) {
     if (value >= 0) return value;
     errno = (int)-value;
@@ -56,9 +72,9 @@ static long open_attribute(const char *rest) {
 static int open_any(const char *path, int flags, unsigned mode) {
     bool node = strncmp(path, usbfs, sizeof usbfs - 1) == 0, attribute = strncmp(path, sysfs, sizeof sysfs - 1) == 0;
     if (!node && !attribute) return hpt_kernel_open(path, flags, mode);
-    pthread_mutex_lock(&hpt_lock);
+    enter();
     long fd = node ? open_node(path + sizeof usbfs - 1, flags) : open_attribute(path + sizeof sysfs - 1);
-    pthread_mutex_unlock(&hpt_lock);
+    leave();
     return (int)result(fd);
 }
 
@@ -80,18 +96,18 @@ int __open_2(const char *path, int flags) {
 int close(int fd) {
     hpt_file *file = hpt_file_at(fd);
     if (!file) return hpt_kernel_close(fd);
-    pthread_mutex_lock(&hpt_lock);
+    enter();
     hpt_file_close(file);
-    pthread_mutex_unlock(&hpt_lock);
+    leave();
     return 0;
 }
 
 ssize_t read(int fd, void *bytes, size_t n) {
     hpt_file *file = hpt_file_at(fd);
     if (!file) return hpt_kernel_read(fd, bytes, n);
-    pthread_mutex_lock(&hpt_lock);
+    enter();
     long moved = hpt_file_read(file, bytes, n);
-    pthread_mutex_unlock(&hpt_lock);
+    leave();
     return result(moved);
 }
 
@@ -110,18 +126,18 @@ int ioctl(int fd, unsigned long request, ...) {
     va_end(rest);
     hpt_file *file = hpt_file_at(fd);
     if (!file) return (int)syscall(SYS_ioctl, fd, request, argument);
-    pthread_mutex_lock(&hpt_lock);
+    enter();
     int error = hpt_file_ioctl(file, request, argument);
-    pthread_mutex_unlock(&hpt_lock);
+    leave();
     return (int)result(error);
 }
 
 PLAIN void *mmap(void *address, size_t bytes, int protection, int flags, int fd, off_t offset) {
     hpt_file *file = fd < 0 ? NULL : hpt_file_at(fd);
     if (!file) return (void *)syscall(SYS_mmap, address, bytes, protection, flags, fd, offset);
-    pthread_mutex_lock(&hpt_lock);
+    enter();
     void *memory = hpt_file_map(file, bytes);
-    pthread_mutex_unlock(&hpt_lock);
+    leave();
     if (memory) return memory;
     errno = ENOMEM;
     return MAP_FAILED;

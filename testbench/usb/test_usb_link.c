@@ -8,10 +8,12 @@
 #include <poll.h>
 #include <pthread.h>
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -262,6 +264,78 @@ static void packets_of_half_a_mebibyte(void **state) {
     largest_packets(HP_USB_SUPER, 65536);
 }
 
+/* A packet of 512 KiB ends with a zero-length USB packet, which belongs to it: it is not taken for a packet of its
+ * own. */
+typedef struct received {
+    size_t moved[4];
+    unsigned count;
+} received;
+
+static void note_received(hp_transfer *transfer) {
+    received *all = transfer->owner;
+    assert_int_equal(transfer->status, HP_OK);
+    if (transfer->in) all->moved[all->count++] = transfer->moved;
+}
+
+static void forget(hp_transfer *transfer) {
+    (void)transfer;
+}
+
+static hpt_fault grow_the_first(void *context, bool in, unsigned number, const uint8_t *bytes, size_t n) {
+    (void)context, (void)bytes, (void)n;
+    return in && number == 0 ? (hpt_fault){HPT_FAULT_GROW, 512 * 1024} : (hpt_fault){0};
+}
+
+static size_t make_hello(uint8_t *packet, uint32_t tag) {
+    const hp_header header = {
+        .version = HP_PROTOCOL_VERSION, .opcode = HP_OPCODE_HELLO, .tag = tag, .length = HP_HELLO_FIXED};
+    uint8_t *payload = packet + HP_HEADER_BYTES;
+    hp_put16(payload + HP_AT_HELLO_version_min, HP_PROTOCOL_VERSION);
+    hp_put16(payload + HP_AT_HELLO_version_max, HP_PROTOCOL_VERSION);
+    return hp_packet_seal(packet, &header);
+}
+
+static void the_largest_packet_there_is(hp_usb_speed speed, unsigned transfer) {
+    enum { REPLY = HP_HEADER_BYTES + HP_HELLO_REPLY_FIXED + HP_CRC_BYTES };
+    uint8_t hello[2][64] = {{0}};
+    received all = {0};
+    hp_transfer in[3], out[2];
+    hp_transport *link;
+    hp_message message;
+    rig *r = straight(speed, RECORDS);
+    r->plug.choose = grow_the_first;
+    r->def.usb_transfer = transfer;
+    rig_plug(r, "HP1");
+    assert_int_equal(hp_transport_usb(&r->def, NULL, &link, &message), HP_OK);
+    size_t room = link->ops->in_room(link);
+    for (unsigned i = 0; i < 3; i++) {
+        in[i] = (hp_transfer){
+            .bytes = link->ops->allocate(link, room), .room = room, .done = note_received, .owner = &all};
+        assert_int_equal(link->ops->submit_in(link, &in[i]), HP_OK);
+    }
+    for (unsigned i = 0; i < 2; i++) {
+        out[i] =
+            (hp_transfer){.bytes = hello[i], .room = make_hello(hello[i], i), .done = note_received, .owner = &all};
+        assert_int_equal(link->ops->submit_out(link, &out[i]), HP_OK);
+    }
+    for (unsigned completed; link->ops->poll(link, 50, &completed) == HP_OK;) continue;
+    assert_int_equal(all.count, 2);
+    assert_int_equal(all.moved[0], 512 * 1024);
+    assert_int_equal(all.moved[1], REPLY);
+    in[2].done = forget;
+    link->ops->close(link);
+    tear_down(NULL);
+}
+
+static void packets_of_512_kib_end_in_their_transfer(void **state) {
+    (void)state;
+    static const unsigned transfers[] = {0, 4096, 1u << 20};
+    for (unsigned i = 0; i < 3; i++) {
+        the_largest_packet_there_is(HP_USB_HIGH, transfers[i]);
+        the_largest_packet_there_is(HP_USB_SUPER, transfers[i]);
+    }
+}
+
 static void several_transfers_are_under_way(void **state) {
     (void)state;
     rig *r = straight(HP_USB_SUPER, RECORDS);
@@ -313,6 +387,38 @@ static void no_memory_for_urbs(void **state) {
     rig_plug(r, "HP1");
     assert_int_equal(rig_open(r), HP_ERROR_MEMORY);
     rig_says(NULL, "out of memory");
+}
+
+/* ---- what an earlier program left ---- */
+
+static bool give_up(void *context, uint64_t done, uint64_t total) {
+    (void)total;
+    return !*(bool *)context || done == 0;
+}
+
+/* Answers that nobody fetched wait in the board, and survive that the interface is set. */
+static void stale_packets_are_drained(void **state) {
+    (void)state;
+    bool stop = false;
+    hp_result results[RIG_RAYS];
+    now = rig_new(HP_USB_SUPER, RECORDS, true);
+    now->plug.keeps = true;
+    now->def.usb_depth = 1;
+    now->def.progress = give_up;
+    now->def.progress_context = &stop;
+    rig_begin(now);
+    hpt_delay(now->board, 60000); /* longer than progress is silent */
+    stop = true;
+    assert_int_equal(rig_ask_closest(now, results), HP_ERROR_CANCELLED);
+    rig_close(now); /* with answers on their way */
+    hpt_delay(now->board, 0);
+    stop = false;
+    assert_int_equal(rig_open(now), HP_OK);
+    assert_int_equal(now->device->queue.counts.dropped, 0);
+    assert_int_equal(now->device->queue.counts.damaged, 0);
+    assert_int_equal(rig_upload(now), HP_OK);
+    rig_check_usable(now);
+    assert_int_equal(now->device->queue.counts.dropped, 0);
 }
 
 /* ---- whose loop waits ---- */
@@ -478,6 +584,33 @@ static void a_slow_board_costs_nothing(void **state) {
     assert_true(told > 3); /* and the program is kept informed */
 }
 
+/* ---- signals ---- */
+
+static unsigned alarms;
+
+static void take_alarm(int signal) {
+    (void)signal;
+    alarms++;
+}
+
+/* A signal ends a wait early, and nothing else. */
+static void signals_do_no_harm(void **state) {
+    (void)state;
+    rig *r = straight(HP_USB_SUPER, RECORDS);
+    r->def.retries = 0;
+    rig_begin(r);
+    hpt_delay(r->board, 20000);
+    const struct sigaction ours = {.sa_handler = take_alarm};
+    struct sigaction before;
+    const struct itimerval often = {.it_interval = {.tv_usec = 2000}, .it_value = {.tv_usec = 2000}}, never = {0};
+    sigaction(SIGALRM, &ours, &before);
+    setitimer(ITIMER_REAL, &often, NULL);
+    rig_check_usable(r);
+    setitimer(ITIMER_REAL, &never, NULL);
+    sigaction(SIGALRM, &before, NULL);
+    assert_true(alarms > 10);
+}
+
 #define EACH_TEST(name) cmocka_unit_test_teardown(name, tear_down)
 #define HPT_TEST(program, name, words, outcome) HPT_OF_##program(name)
 #define HPT_OF_test_usb_faults(name)
@@ -495,7 +628,10 @@ int main(void) {
         EACH_TEST(both_speeds_and_all_sizes),
         EACH_TEST(old_kernels),
         EACH_TEST(packets_of_half_a_mebibyte),
+        EACH_TEST(packets_of_512_kib_end_in_their_transfer),
         EACH_TEST(several_transfers_are_under_way),
+        EACH_TEST(stale_packets_are_drained),
+        EACH_TEST(signals_do_no_harm),
         EACH_TEST(the_kernels_memory_is_used),
         EACH_TEST(no_memory_of_the_kernels),
         EACH_TEST(a_loop_of_the_users),

@@ -60,8 +60,9 @@ static void print_counts(const rig *r, unsigned rounds) {
            hpt_counts(r->board).halts_cleared);
 }
 
-static rig *begin(hp_usb_speed speed) {
+static rig *begin(hp_usb_speed speed, unsigned transfer) {
     now = rig_new(speed, RECORDS, true);
+    now->def.usb_transfer = transfer;
     now->def.timeout_ms = TIMEOUT_MS;
     now->def.retries = RETRIES;
     now->def.reconnect_ms = 10000;
@@ -86,7 +87,11 @@ static void soak_with_faults(void **state) {
         HPT_FAULT_STALL, HPT_FAULT_NO_ZERO,   HPT_FAULT_PROTO, HPT_FAULT_OVERFLOW, HPT_FAULT_HANG,
     };
     enum { KINDS = sizeof kinds / sizeof kinds[0] };
-    rig *r = begin(HP_USB_HIGH);
+    rig *r = begin(HP_USB_HIGH, 0);
+    soak(r, PACKETS, 100, kinds, KINDS);
+    assert_int_equal(hp_reconnections(r->device), 0);
+    tear_down(NULL);
+    r = begin(HP_USB_HIGH, 1024); /* in pieces, copied */
     soak(r, PACKETS, 100, kinds, KINDS);
     assert_int_equal(hp_reconnections(r->device), 0);
 }
@@ -95,7 +100,7 @@ static void soak_with_replugs(void **state) {
     (void)state;
     static const hpt_fault_kind kinds[] = {HPT_FAULT_UNPLUG, HPT_FAULT_RESET, HPT_FAULT_DROP, HPT_FAULT_STALL,
                                            HPT_FAULT_FLIP};
-    rig *r = begin(HP_USB_SUPER);
+    rig *r = begin(HP_USB_SUPER, 0);
     soak(r, PACKETS_WITH_REPLUGS, 100, kinds, sizeof kinds / sizeof kinds[0]);
     assert_true(hp_reconnections(r->device) > 5);
 }

@@ -289,7 +289,7 @@ static int set_interface(hpt_file *file, const struct usbdevfs_setinterface *cho
     const uint8_t setup[8] = {0x01, 11, (uint8_t)choice->altsetting, 0, (uint8_t)choice->interface, 0, 0, 0};
     int error = claim(file, choice->interface);
     if (error) return error;
-    hpt_cable_flush(file->device->cable);
+    if (!file->device->def.keeps) hpt_cable_flush(file->device->cable);
     return hpt_cable_control(file->device->cable, setup, NULL, 0) < 0 ? -EPIPE : 0;
 }
 

@@ -20,6 +20,7 @@ typedef struct hpt_device_def {
     hpt_choose *choose; /* NULL: the cable is straight */
     void *context;      /* of choose */
     bool denied;        /* open for writing: EACCES */
+    bool keeps;         /* what was on its way to the host survives SET_INTERFACE, as in a careless board */
     bool maps;          /* mmap gives memory, as newer kernels do */
     unsigned memory;    /* bytes that urbs may take at a time, as usbcore.usbfs_memory_mb has it; 0: any */
     unsigned delay_us;  /* urbs to the host end so much later */
@@ -47,14 +48,17 @@ int hpt_open(hpt_device *device);
 int hpt_control(hpt_device *device, const uint8_t setup[8], uint8_t *bytes, size_t length);
 
 typedef struct hpt_bus_counts {
-    unsigned urbs, in_flight_most; /* bulk urbs submitted; most of them pending at a time */
-    unsigned packets[2];           /* of a faulty cable; [1]: to the host */
-    unsigned halts_cleared, files; /* files now open */
-    unsigned mapped;               /* bulk urbs whose bytes lay in memory that mmap gave */
-    size_t memory_most;            /* bytes of bulk urbs pending at a time */
+    unsigned urbs, in_flight, in_flight_most; /* bulk urbs submitted; now pending; most of them at a time */
+    unsigned packets[2];                      /* of a faulty cable; [1]: to the host */
+    unsigned halts_cleared, files;            /* files now open */
+    unsigned mapped;                          /* bulk urbs whose bytes lay in memory that mmap gave */
+    size_t memory_most;                       /* bytes of bulk urbs pending at a time */
 } hpt_bus_counts;
 hpt_bus_counts hpt_counts(hpt_device *device);
 
 double hpt_now_ms(void); /* monotonic */
+
+/* Whether this thread is inside of a call that is for the bus: what it does there is the board's doing. */
+bool hpt_inside(void);
 
 #endif
