@@ -57,6 +57,8 @@ struct hpt_device {
     pthread_cond_t changed;
     hpt_pendings later;      /* ended urbs, delayed; the earliest first */
     double busy_us;          /* the wire is, until then */
+    bool failing;            /* every bulk urb ends with EPROTO */
+    uint64_t pull_due_us;    /* 0: never */
     uint64_t push_due_us;    /* 0: never */
     uint64_t release_due_us; /* of what the cable holds; 0: it holds nothing */
 };
@@ -89,6 +91,7 @@ void hpt_file_kill(hpt_file *file);                                        /* it
 int hpt_file_ioctl(hpt_file *file, unsigned long request, void *argument); /* 0, or a negative errno */
 long hpt_file_read(hpt_file *file, void *bytes, size_t n);
 void *hpt_file_map(hpt_file *file, size_t bytes); /* NULL: not given */
+void hpt_file_fail(hpt_file *file);               /* its device is failing */
 void hpt_pending_deliver(hpt_pending *pending);   /* its time has come */
 
 /* ---- udev.c ---- */

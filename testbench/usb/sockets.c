@@ -60,7 +60,8 @@ static void push(hpt_device *device) {
 }
 
 static void pull(hpt_device *device) {
-    device->pull_due = false;
+    device->pull_due = device->failing = false;
+    device->pull_due_us = 0;
     if (!device->present) return;
     device->present = false;
     hpt_cable_pull(device->cable);
@@ -99,6 +100,7 @@ void hpt_bus_reset(hpt_device *device) {
 
 static uint64_t next_due(const hpt_device *device) {
     uint64_t due = device->push_due_us ? device->push_due_us : UINT64_MAX;
+    if (device->pull_due_us && device->pull_due_us < due) due = device->pull_due_us;
     if (device->later.first && device->later.first->due_us < due) due = device->later.first->due_us;
     if (device->release_due_us && device->release_due_us < due) due = device->release_due_us;
     return due;
@@ -118,6 +120,7 @@ static void *run_clock(void *argument) {
             continue;
         }
         if (device->later.first && device->later.first->due_us <= now) hpt_pending_deliver(device->later.first);
+        if (device->pull_due_us && device->pull_due_us <= now) pull(device);
         if (device->push_due_us && device->push_due_us <= now) push(device);
         if (device->release_due_us && device->release_due_us <= now) hpt_cable_release(device->cable);
         if (device->present) hpt_settle(device);
@@ -174,6 +177,15 @@ void hpt_pull(hpt_device *device) {
     pthread_mutex_lock(&hpt_lock);
     device->push_due_us = 0;
     pull(device);
+    pthread_mutex_unlock(&hpt_lock);
+}
+
+void hpt_pull_slowly(hpt_device *device, unsigned ms) {
+    pthread_mutex_lock(&hpt_lock);
+    device->failing = true;
+    for (hpt_file *file = device->files; file; file = file->next) hpt_file_fail(file);
+    device->pull_due_us = hpt_now_us() + 1000ull * ms;
+    hpt_clock_changed(device);
     pthread_mutex_unlock(&hpt_lock);
 }
 

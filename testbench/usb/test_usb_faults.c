@@ -129,6 +129,8 @@ static void suffer(const fault_case *c, hp_usb_speed speed, unsigned transfer, c
     hp_status status = rig_ask_closest(r, results);
     assert_true(r->plan.faults > 0);
     describe(r, status, outcome);
+    if (c->kind == HPT_FAULT_GROW && transfer) /* what is too long is one bad packet, not many */
+        assert_int_equal(r->device->queue.counts.damaged, 1);
     check_results(r, status, results);
     if (status != HP_ERROR_DISCONNECTED) {
         check_still_usable(r);

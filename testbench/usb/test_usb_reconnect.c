@@ -148,6 +148,25 @@ static void lost_without_reconnection(void **state) {
     assert_int_equal(hp_read_counters(r->device, false, &counters), HP_ERROR_DISCONNECTED);
 }
 
+/* Before the kernel notices that a cable was pulled, urbs fail one after the other. That is not taken for a bad
+ * endpoint, and does not keep the processor busy. */
+static void errors_before_the_unplug(void **state) {
+    (void)state;
+    hp_result results[RIG_RAYS];
+    rig *r = patient(0);
+    r->device->queue.timeout_ms = 10000;
+    unsigned before = hpt_counts(r->board).urbs;
+    hpt_pull_slowly(r->board, 300);
+    double start = hpt_now_ms();
+    assert_int_equal(rig_ask_closest(r, results), HP_ERROR_DISCONNECTED);
+    double took = hpt_now_ms() - start;
+    unsigned urbs = hpt_counts(r->board).urbs - before;
+    printf("%.0f ms and %u urbs until the kernel noticed\n", took, urbs);
+    assert_true(took >= 250 && took < 1000);
+    assert_true(urbs < 100);
+    assert_int_equal(hp_completed(r->device), 0);
+}
+
 static void not_back_in_time(void **state) {
     (void)state;
     hp_result results[RIG_RAYS];

@@ -171,6 +171,7 @@ static void urb_done(hpt_urb *urb) {
     hpt_device *device = pending->file->device;
     device->memory -= pending->bytes;
     device->flying -= is_bulk(pending);
+    if (device->failing && is_bulk(pending)) urb->error = -EPROTO;
     pending->due_us = due(device, pending);
     if (!pending->due_us || urb->error) {
         hpt_pending_deliver(pending);
@@ -235,8 +236,18 @@ static int submit(hpt_file *file, struct usbdevfs_urb *user) {
     if (control) memcpy(pending->urb.urb.setup, user->buffer, CONTROL_SETUP);
     append(&file->under_way, pending);
     count_urb(device, pending);
-    hpt_cable_submit(device->cable, &pending->urb);
+    if (device->failing && is_bulk(pending))
+        urb_done(&pending->urb);
+    else
+        hpt_cable_submit(device->cable, &pending->urb);
     return 0;
+}
+
+void hpt_file_fail(hpt_file *file) {
+    for (hpt_pending *at = file->under_way.first, *next; at; at = next) {
+        next = at->next;
+        if (is_bulk(at)) hpt_cable_unlink(file->device->cable, &at->urb);
+    }
 }
 
 static hpt_pending *find(const hpt_pendings *list, const hpt_file *file, const struct usbdevfs_urb *user) {

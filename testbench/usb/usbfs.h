@@ -35,6 +35,10 @@ hpt_device *hpt_plug(const hpt_device_def *def);
 void hpt_pull(hpt_device *device);
 void hpt_push(hpt_device *device);
 
+/* Pulls it out as it happens: for `ms` milliseconds every bulk urb fails with EPROTO at once, then the kernel
+ * notices. */
+void hpt_pull_slowly(hpt_device *device, unsigned ms);
+
 /* Pulls it out for good. Open files stay good for nothing until they are closed. */
 void hpt_discard(hpt_device *device);
 
