@@ -143,6 +143,12 @@ static int take_down(void **state) {
         if (got != (wanted)) fail_msg("status %d, not %d:\n%s", got, wanted, m.children[0].text);                    \
     } while (0)
 
+/* The program beside those that EXPECT runs ends, with this status. */
+static void child_ends(int wanted) {
+    int got = hpt_child_end(&m.children[1], SECONDS);
+    if (got != wanted) fail_msg("status %d, not %d:\n%s", got, wanted, m.children[1].text);
+}
+
 static void child_says(const hpt_child *child, const char *words) {
     if (!strstr(child->text, words)) fail_msg("no '%s' in:\n%s", words, child->text);
 }
@@ -330,7 +336,7 @@ static void fetch_old_events(unsigned i) {
 
 static void end_with(int signal, int status) {
     kill(m.children[1].pid, signal);
-    assert_int_equal(hpt_child_end(&m.children[1], SECONDS), status);
+    child_ends(status);
 }
 
 static void watching_shows_every_packet_once(void **state) {
@@ -365,7 +371,7 @@ static void watching_ends_when_it_is_told_to(void **state) {
         watch_begins(i, "--count 3 --json");
         await(somebody_listens);
         EXPECT(0, "%s trace %s --target usb --out %s/usb.exr", programs[0], scene, m.work);
-        assert_int_equal(hpt_child_end(&m.children[1], SECONDS), 0);
+        child_ends(0);
         assert_int_equal(count_of(m.children[1].text, "\n"), 3);
         assert_true(count_of(m.children[1].text, "\"kind\":\"PACKET_DONE\",\"status\":\"HP_OK\",\"tag\":") >= 2);
         assert_int_equal(count_of(m.children[1].text, "\"lost\":0,"), 3);
@@ -419,7 +425,7 @@ static void watching_ends_when_the_board_is_unplugged(void **state) {
         watch_begins(i, "");
         await(somebody_listens);
         hpt_pull(board);
-        assert_int_equal(hpt_child_end(&m.children[1], SECONDS), 4);
+        child_ends(4);
         child_says(&m.children[1], i == HIDRAW ? "hitpipe watch: board HP-000001 (/dev/hidraw0) was unplugged\n"
                                                : "hitpipe watch: board HP-000001 (1-1:1.1) was unplugged\n");
         EXPECT(4, "%s watch", programs[i]);
@@ -485,12 +491,12 @@ static void a_reset_in_its_midst_ends_a_run_or_not(void **state) {
     trace_on_model();
     slow_run("");
     EXPECT(0, "%s reset", programs[HIDRAW]);
-    assert_int_equal(hpt_child_end(&m.children[1], SECONDS), 4);
+    child_ends(4);
     hpt_child_free(&m.children[1]);
     slow_run("--reconnect 10");
     EXPECT(0, "%s reset", programs[HIDRAW]);
     hpt_delay(m.boards[0], 0);
-    assert_int_equal(hpt_child_end(&m.children[1], SECONDS), 0);
+    child_ends(0);
     expect_same("usb.exr");
 }
 
@@ -499,7 +505,7 @@ static void ended_by(int signal, int status) {
     plug("HP-000001");
     slow_run("");
     kill(m.children[1].pid, signal);
-    assert_int_equal(hpt_child_end(&m.children[1], SECONDS), status);
+    child_ends(status);
     hpt_delay(m.boards[0], 0);
     trace_works();
     EXPECT(0, "%s reset", programs[0]);
@@ -603,7 +609,7 @@ static void without_permission_the_udev_rule_is_named(void **state) {
         for (unsigned k = 0; k < sizeof commands / sizeof commands[0]; k++) {
             hpt_child_free(&m.children[1]);
             hpt_child_start(&m.children[1], true, "%s %s", programs[i], commands[k]);
-            assert_int_equal(hpt_child_end(&m.children[1], SECONDS), k == 2 ? 0 : 4);
+            child_ends(k == 2 ? 0 : 4);
             child_says(&m.children[1], "no permission");
             child_says(&m.children[1], "60-hitpipe.rules");
             assert_int_equal(count_of(m.children[1].text, "60-hitpipe.rules"), k == 2 ? 2 : 1); /* USB and HID */
@@ -612,7 +618,7 @@ static void without_permission_the_udev_rule_is_named(void **state) {
     hpt_mock_chmod(board, 0666);
     hpt_child_free(&m.children[1]);
     hpt_child_start(&m.children[1], true, "%s reset", programs[0]);
-    assert_int_equal(hpt_child_end(&m.children[1], SECONDS), 0);
+    child_ends(0);
 }
 
 static void a_busy_interface_is_said_to_be(void **state) {
