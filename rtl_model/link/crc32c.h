@@ -15,7 +15,7 @@ uint32_t hp_crc32c_table(uint32_t crc, const void *bytes, size_t n);
 /* Whether this processor has a CRC-32C instruction (SSE4.2, ARMv8 crc) and this build knows it. */
 bool hp_crc32c_has_instruction(void);
 
-/* Eight bytes a step. Only where hp_crc32c_has_instruction is true. */
+/* Eight bytes a step, and 24 of what is longer than 12 KiB. Only where hp_crc32c_has_instruction is true. */
 uint32_t hp_crc32c_instruction(uint32_t crc, const void *bytes, size_t n);
 
 #endif

@@ -1,6 +1,7 @@
 /* Packets: bytes, CRC-32C, damage; and that docs/protocol.md says what packets.def and the other tables say. */
 #include "rtl_model/link/crc32c.h"
 #include "testbench/support/page.h"
+#include "testbench/support/random.h"
 #include <hitpipe/board.h>
 #include <hitpipe/packet.h>
 #include <setjmp.h>
@@ -51,6 +52,23 @@ static void crc_is_the_same_by_every_way(void **state) {
             assert_int_equal(hp_crc32c_table(0x1234567, bytes + from, n), crc);
             assert_int_equal(hp_crc32c(0x1234567, bytes + from, n), crc);
             if (hp_crc32c_has_instruction()) assert_int_equal(hp_crc32c_instruction(0x1234567, bytes + from, n), crc);
+        }
+    }
+}
+
+/* Long packets are computed in lanes: on both sides of where these begin. */
+static void crc_of_long_messages(void **state) {
+    (void)state;
+    static uint8_t bytes[100000];
+    hpt_random random = hpt_random_seed(1);
+    for (size_t i = 0; i < sizeof bytes; i++) bytes[i] = (uint8_t)hpt_random_below(&random, 256);
+    for (size_t middle = 0; middle <= 8 * 12288; middle += 4096) {
+        for (size_t n = middle < 9 ? 0 : middle - 9; n < middle + 9; n++) {
+            size_t from = n % 8;
+            uint32_t crc = hp_crc32c_table((uint32_t)n, bytes + from, n);
+            assert_int_equal(hp_crc32c((uint32_t)n, bytes + from, n), crc);
+            if (hp_crc32c_has_instruction())
+                assert_int_equal(hp_crc32c_instruction((uint32_t)n, bytes + from, n), crc);
         }
     }
 }
@@ -291,6 +309,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(crc_of_known_messages),
         cmocka_unit_test(crc_is_the_same_by_every_way),
+        cmocka_unit_test(crc_of_long_messages),
         cmocka_unit_test(crc_goes_on),
         cmocka_unit_test(what_is_sealed_opens),
         cmocka_unit_test(a_packet_without_payload_is_its_header),
