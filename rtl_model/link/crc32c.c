@@ -50,8 +50,8 @@ bool hp_crc32c_has_instruction(void) {
 #ifdef CRC_TARGET
 
 /* The instruction answers after three clocks and can be given another at each, so long packets are computed in three
- * lanes at a time. A CRC is a polynomial modulo the CRC's own, bit 31 the coefficient of x^0: the lanes are put together
- * by multiplying the first by x^(8 * 2 * LANE), the second by x^(8 * LANE). */
+ * lanes at a time. A CRC is a polynomial modulo the CRC's own, bit 31 the coefficient of x^0: the lanes are put
+ * together by multiplying the first by x^(8 * 2 * LANE), the second by x^(8 * LANE). */
 enum { LANE = 4096 };
 #define PAST_ONE_LANE 0x35D73A62u
 #define PAST_TWO_LANES 0x28461564u
