@@ -36,6 +36,7 @@ refused() {
 }
 
 serve_with faulty
+check "a board for each fault" test "$(wc -l <"$work/serve.out")" -gt 20
 runs=
 status 0 "the model's picture" trace --out "$work/model.exr"
 while read -r busid serial fault; do begin "$busid" "$serial" "$fault"; done <"$work/serve.out"
@@ -48,4 +49,9 @@ while read -r _ _ fault; do
     *) mended "$fault" ;;
     esac
 done <"$work/serve.out"
+check "detach" detach
+kill "$served"
+wait "$served"
+check "the server ends" test $? = 0
+served=
 report_board
