@@ -34,7 +34,7 @@ typedef enum hp_urb_status {
     HP_URB_STALL,     /* the endpoint is halted, or the request is none that the device knows */
     HP_URB_OVERFLOW,  /* the device had more than the urb has room for */
     HP_URB_CANCELLED, /* hp_gadget_unlink, a reset, or the gadget's end */
-    HP_URB_SHORT      /* nothing of the gadget's: for cables that lose things */
+    HP_URB_LOST       /* nothing of the gadget's: for cables that lose things, EPROTO in the kernel */
 } hp_urb_status;
 
 typedef struct hp_urb hp_urb;

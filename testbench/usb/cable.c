@@ -40,6 +40,7 @@ struct hpt_cable {
     bool halted[2];
     bool out_of_socket; /* nothing passes any more */
     bool reset_due;     /* somebody resets the board */
+    bool refused;       /* the board is not configured: no use in asking it again at once */
     urbs in;            /* of the host, waiting for bytes */
     urbs stuck;         /* never end */
     uint8_t *out;       /* the packet that the host is sending */
@@ -348,6 +349,7 @@ static void pass_in(hpt_cable *cable, const uint8_t *bytes, size_t n) {
 static void fetched(hp_urb *urb) {
     fetch *now = urb->owner;
     now->busy = false;
+    if (urb->status == HP_URB_STALL) now->cable->refused = true;
     if (urb->status == HP_URB_OK && !now->cable->out_of_socket) pass_in(now->cable, now->bytes, urb->moved);
 }
 
@@ -361,7 +363,7 @@ static bool fetch_more(hpt_cable *cable) {
     bool any = false;
     for (unsigned i = 0; i < FETCHES && cable->choose && count(cable->arrived) < ARRIVED_MOST; i++) {
         fetch *now = &cable->fetches[i];
-        if (now->busy || cable->halted[HALT_IN]) continue;
+        if (now->busy || cable->halted[HALT_IN] || cable->refused) continue;
         now->busy = any = true;
         now->cable = cable;
         now->urb = (hp_urb){.endpoint = HP_USB_IN_ENDPOINT,
@@ -447,6 +449,7 @@ void hpt_cable_unlink(hpt_cable *cable, hpt_urb *urb) {
 }
 
 void hpt_cable_run(hpt_cable *cable) {
+    cable->refused = false;
     for (bool any = true; any && !cable->out_of_socket;) {
         if (cable->reset_due) soft_reset(cable);
         any = fetch_more(cable);

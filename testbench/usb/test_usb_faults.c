@@ -3,6 +3,7 @@
  * comes twice, and the board can be used again. */
 #include "driver/device.h"
 #include "rig.h"
+#include "testbench/support/board_host.h"
 #include "testbench/support/page.h"
 #include <setjmp.h>
 #include <stdarg.h>
@@ -346,6 +347,25 @@ static void killed_program(void **state) {
     rig_check_usable(r);
 }
 
+/* ---- a cable alone ---- */
+
+static hpt_fault no_fault(void *context, bool in, unsigned number, const uint8_t *bytes, size_t n) {
+    (void)context, (void)in, (void)number, (void)bytes, (void)n;
+    return (hpt_fault){HPT_FAULT_NONE, 0};
+}
+
+/* As a kernel finds it: its endpoint halts what the cable asks it for, again and again. */
+static void a_board_that_is_not_configured_is_left_alone(void **state) {
+    (void)state;
+    const hp_gadget_def def = {.board = hpt_board("usb3", HP_ENGINE_QUICK), .serial = "HP1", .speed = HP_USB_HIGH};
+    hp_gadget *gadget;
+    assert_int_equal(hp_gadget_create(&def, &gadget), HP_OK);
+    hpt_cable *cable = hpt_cable_new(gadget, no_fault, NULL, NULL);
+    hpt_cable_run(cable); /* comes to an end */
+    hpt_cable_free(cable);
+    hp_gadget_destroy(gadget);
+}
+
 /* ---- the page ---- */
 
 static void the_page_has_every_case(void **state) {
@@ -375,6 +395,7 @@ int main(void) {
     enum { CASES = sizeof cases / sizeof cases[0] };
     const struct CMUnitTest others[] = {
 #include "fault_tests.def"
+        cmocka_unit_test(a_board_that_is_not_configured_is_left_alone),
         cmocka_unit_test(the_page_has_every_case),
     };
     struct CMUnitTest tests[CASES] = {{0}};

@@ -1,6 +1,7 @@
 # testbench/kernel/guest/board.sh: counting checks (check.sh) with boards on the guest's USB. Source it, end with `report_board`.
 #
 #   serve OPTION...      starts `hitpipe serve`, and returns when it listens
+#   serve_with COMMAND...   the same of another server
 #   attach BUSID...      attaches boards, and returns when udev has made their nodes
 #   detach               detaches all boards
 #   boards N             waits until N boards are there, nodes and all
@@ -28,9 +29,11 @@ until_true() {
     done
 }
 
-serve() {
+serve() { serve_with hitpipe serve "$@"; }
+
+serve_with() {
     rm -f "$work/serve.out"
-    hitpipe serve "$@" >"$work/serve.out" 2>"$work/serve.err" &
+    "$@" >"$work/serve.out" 2>"$work/serve.err" &
     served=$!
     until_true 10 grep -q '^1-1' "$work/serve.out" || cat "$work/serve.out" "$work/serve.err"
 }
