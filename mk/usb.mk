@@ -5,5 +5,8 @@ USB_PROGRAMS := $(filter $(BUILD)/testbench/usb/test_% $(BUILD)/testbench/bench/
 $(USB_PROGRAMS): $(USB_OBJ)
 $(USB_PROGRAMS): OWN_OBJ := $(USB_OBJ)
 
+# Of hidapi's back ends the bus has what the libusb one asks for.
+$(BUILD)/testbench/usb/test_usb_hid: PKGS_LIB := libusb-1.0 hidapi-libusb
+
 # This one counts what the driver allocates: its own calls, not libusb's.
 $(BUILD)/testbench/usb/test_usb_memory: OWN_OBJ := $(USB_OBJ) $(foreach f,malloc calloc realloc aligned_alloc,-Wl,--wrap=$(f))

@@ -7,6 +7,7 @@
  * it took. */
 #include "hid.h"
 #include <errno.h>
+#include <fcntl.h>
 #include <hidapi.h>
 #include <limits.h>
 #include <pthread.h>
@@ -16,7 +17,11 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { PATIENCE_MS = 950 }; /* a request that took so long was given up by hidapi (after 1 s) or the kernel (5 s) */
+enum {
+    PATIENCE_MS = 950, /* a request that took so long was given up by hidapi (after 1 s) or the kernel (5 s) */
+    NOTICE_MS = 500,   /* the kernel asks a hub every quarter of a second whether a board was unplugged */
+    STEP_MS = 5
+};
 
 typedef struct hidapi_board {
     hp_hid head;
@@ -48,10 +53,11 @@ static unsigned read_number(const char *directory, const char *name) {
     char path[300];
     unsigned number = 0;
     snprintf(path, sizeof path, "%s/%s", directory, name);
-    FILE *file = fopen(path, "re");
-    if (!file) return 0;
-    if (fscanf(file, "%u", &number) != 1) number = 0;
-    fclose(file);
+    int file = open(path, O_RDONLY | O_CLOEXEC);
+    if (file < 0) return 0;
+    char text[16] = "";
+    if (read(file, text, sizeof text - 1) > 0) number = (unsigned)strtoul(text, NULL, 10);
+    close(file);
     return number;
 }
 
@@ -79,13 +85,25 @@ static hp_status gone(const hidapi_board *b, hp_message *message) {
     return hp_say(message, HP_ERROR_DISCONNECTED, "board %s (%s) was unplugged", b->board.serial, b->board.path);
 }
 
+/* Whether the board is unplugged, or will be within `ms`: requests fail before the kernel notices. */
+static bool is_going(const hidapi_board *b, unsigned ms) {
+    for (; plugged_in(b->board.path); ms -= STEP_MS) {
+        if (ms < STEP_MS) return false;
+        nanosleep(&(struct timespec){.tv_nsec = STEP_MS * 1000000L}, NULL);
+    }
+    return true;
+}
+
 /* Why a request failed that began at `began`, with `error` for errno behind it. */
 static hp_status why(const hidapi_board *b, uint64_t began, int error, const char *request, hp_message *message) {
     char words[128];
     bool told = is_node(b->board.path) && error;
-    if (!plugged_in(b->board.path) || (told && (error == ENODEV || error == ESHUTDOWN))) return gone(b, message);
     uint64_t took = now_ms() - began;
-    if ((told && error == ETIMEDOUT) || took >= PATIENCE_MS)
+    bool late = (told && error == ETIMEDOUT) || took >= PATIENCE_MS;
+    bool refused = told && error == EPIPE; /* by the board itself */
+    bool shut = told && (error == ENODEV || error == ESHUTDOWN);
+    if (shut || is_going(b, late || refused ? 0 : NOTICE_MS)) return gone(b, message);
+    if (late)
         return hp_say(message, HP_ERROR_TIMEOUT, "board %s did not answer %s in %llu ms", b->board.serial, request,
                       (unsigned long long)took);
     return hp_say(message, HP_ERROR_IO, "board %s refused %s: %s", b->board.serial, request,

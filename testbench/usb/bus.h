@@ -57,7 +57,7 @@ struct hpt_device {
     pthread_cond_t changed;
     hpt_pendings later;      /* ended urbs, delayed; the earliest first */
     double busy_us;          /* the wire is, until then */
-    bool failing;            /* every bulk urb ends with EPROTO */
+    bool failing;            /* every urb but the one that waits for events ends with EPROTO */
     uint64_t pull_due_us;    /* 0: never */
     uint64_t push_due_us;    /* 0: never */
     uint64_t release_due_us; /* of what the cable holds; 0: it holds nothing */

@@ -1,5 +1,6 @@
-/* The program's own open, close, read, lseek, ioctl and mmap: libusb's calls come here, and those that are not for
- * the bus go on to the kernel. Nothing here may be instrumented: sanitizers call mmap before they are ready. */
+/* The program's own open, access, close, read, lseek, ioctl and mmap: libusb's calls come here, and those that are
+ * not for the bus go on to the kernel. Nothing here may be instrumented: sanitizers call mmap before they are ready.
+ */
 #include "bus.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -51,13 +52,18 @@ static long result(long value) {
 
 static const char usbfs[] = "/dev/bus/usb/", sysfs[] = "/sys/bus/usb/devices/";
 
-static long open_node(const char *rest, int flags) {
+static long find_node(const char *rest, bool writing, hpt_device **device) {
     unsigned bus, address;
     if (sscanf(rest, "%u/%u", &bus, &address) != 2) return -ENOENT;
-    hpt_device *device = hpt_device_at(bus, address);
-    if (!device) return -ENOENT;
-    if (device->def.denied && (flags & O_ACCMODE) != O_RDONLY) return -EACCES;
-    return hpt_file_open(device);
+    *device = hpt_device_at(bus, address);
+    if (!*device) return -ENOENT;
+    return (*device)->def.denied && writing ? -EACCES : 0;
+}
+
+static long open_node(const char *rest, int flags) {
+    hpt_device *device;
+    long error = find_node(rest, (flags & O_ACCMODE) != O_RDONLY, &device);
+    return error ? error : hpt_file_open(device);
 }
 
 static long open_attribute(const char *rest) {
@@ -89,6 +95,22 @@ int open(const char *path, int flags, ...) {
 int __open_2(const char *path, int flags);
 int __open_2(const char *path, int flags) {
     return open_any(path, flags, 0);
+}
+
+/* ---- access ---- */
+
+int access(const char *path, int mode) {
+    bool node = strncmp(path, usbfs, sizeof usbfs - 1) == 0, attribute = strncmp(path, sysfs, sizeof sysfs - 1) == 0;
+    if (!node && !attribute) return (int)syscall(SYS_faccessat, AT_FDCWD, path, mode);
+    enter();
+    hpt_device *device = NULL;
+    long error = 0;
+    if (node)
+        error = find_node(path + sizeof usbfs - 1, mode & W_OK, &device);
+    else if (!hpt_device_named(path + sizeof sysfs - 1))
+        error = -ENOENT;
+    leave();
+    return (int)result(error);
 }
 
 /* ---- open files ---- */

@@ -617,6 +617,7 @@ static void signals_do_no_harm(void **state) {
 #define HPT_OF_test_usb_link(name) EACH_TEST(name),
 #define HPT_OF_test_usb_reconnect(name)
 #define HPT_OF_test_usb_soak(name)
+#define HPT_OF_test_usb_hid(name)
 
 int main(void) {
     const struct CMUnitTest tests[] = {

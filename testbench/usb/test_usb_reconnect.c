@@ -311,6 +311,7 @@ static void nothing_is_kept_without_need(void **state) {
 #define HPT_OF_test_usb_link(name)
 #define HPT_OF_test_usb_reconnect(name) EACH_TEST(name),
 #define HPT_OF_test_usb_soak(name)
+#define HPT_OF_test_usb_hid(name)
 
 int main(void) {
     const struct CMUnitTest tests[] = {

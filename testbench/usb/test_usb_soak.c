@@ -110,6 +110,7 @@ static void soak_with_replugs(void **state) {
 #define HPT_OF_test_usb_link(name)
 #define HPT_OF_test_usb_reconnect(name)
 #define HPT_OF_test_usb_soak(name) cmocka_unit_test_teardown(name, tear_down),
+#define HPT_OF_test_usb_hid(name)
 
 int main(void) {
     const struct CMUnitTest tests[] = {

@@ -145,6 +145,11 @@ static bool is_bulk(const hpt_pending *pending) {
     return pending->user->type == USBDEVFS_URB_TYPE_BULK;
 }
 
+/* Of a device that is failing, all but the urb that waits for events. */
+static bool fails(const hpt_pending *pending) {
+    return pending->file->device->failing && pending->urb.urb.endpoint != HP_USB_EVENT_ENDPOINT;
+}
+
 void hpt_pending_deliver(hpt_pending *pending) {
     hpt_file *file = pending->file;
     take(&file->device->later, pending); /* it is in one of the two */
@@ -171,7 +176,7 @@ static void urb_done(hpt_urb *urb) {
     hpt_device *device = pending->file->device;
     device->memory -= pending->bytes;
     device->flying -= is_bulk(pending);
-    if (device->failing && is_bulk(pending)) urb->error = -EPROTO;
+    if (fails(pending)) urb->error = -EPROTO;
     pending->due_us = due(device, pending);
     if (!pending->due_us || urb->error) {
         hpt_pending_deliver(pending);
@@ -236,7 +241,7 @@ static int submit(hpt_file *file, struct usbdevfs_urb *user) {
     if (control) memcpy(pending->urb.urb.setup, user->buffer, CONTROL_SETUP);
     append(&file->under_way, pending);
     count_urb(device, pending);
-    if (device->failing && is_bulk(pending))
+    if (fails(pending))
         urb_done(&pending->urb);
     else
         hpt_cable_submit(device->cable, &pending->urb);
@@ -246,7 +251,7 @@ static int submit(hpt_file *file, struct usbdevfs_urb *user) {
 void hpt_file_fail(hpt_file *file) {
     for (hpt_pending *at = file->under_way.first, *next; at; at = next) {
         next = at->next;
-        if (is_bulk(at)) hpt_cable_unlink(file->device->cable, &at->urb);
+        if (fails(at)) hpt_cable_unlink(file->device->cable, &at->urb);
     }
 }
 
@@ -293,6 +298,7 @@ static int control(hpt_file *file, struct usbdevfs_ctrltransfer *request) {
         (uint8_t)(request->wLength & 255),
         (uint8_t)(request->wLength >> 8),
     };
+    if (file->device->failing) return -EPROTO;
     return hpt_cable_control(file->device->cable, setup, request->data, request->wLength);
 }
 

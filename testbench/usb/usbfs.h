@@ -3,7 +3,7 @@
  *
  *     driver -- libusb (the real one) -- open, ioctl, read, mmap, udev_... -- this -- cable -- gadget -- board
  *
- * A program that links this has its own open, openat, close, read, lseek, ioctl and mmap, and the functions of
+ * A program that links this has its own open, access, close, read, lseek, ioctl and mmap, and the functions of
  * libudev that libusb calls; what is not of this bus goes on to the kernel. The file that libusb gets is the writing
  * end of a pipe: it is writable when an urb can be reaped, and in error when the device is gone, so poll, epoll and
  * select are the kernel's. The board works inside of the calls that give it something to do, on their thread. All
@@ -35,8 +35,8 @@ hpt_device *hpt_plug(const hpt_device_def *def);
 void hpt_pull(hpt_device *device);
 void hpt_push(hpt_device *device);
 
-/* Pulls it out as it happens: for `ms` milliseconds every bulk urb fails with EPROTO at once, then the kernel
- * notices. */
+/* Pulls it out as it happens: for `ms` milliseconds every bulk and control urb fails with EPROTO at once, then the
+ * kernel notices. */
 void hpt_pull_slowly(hpt_device *device, unsigned ms);
 
 /* Pulls it out for good. Open files stay good for nothing until they are closed. */
