@@ -39,6 +39,7 @@ struct hpt_client {
     hpt_file *file; /* of usbfs */
     hpt_lent *lent; /* urbs that are not reaped */
     bool told;      /* that the device is gone */
+    bool has_asked; /* of hidraw: for a report */
     hpt_client *next;
 };
 

@@ -263,7 +263,7 @@ static unsigned listeners(const hpt_mock_device *mock) {
     const hpt_file *file = mock->device->claims[HP_USB_HID_INTERFACE];
     if (!mock->device->present || !file) return 0;
     if (mock->bound)
-        for (const hpt_client *client = mock->hid->clients; client; client = client->next) count++;
+        for (const hpt_client *client = mock->hid->clients; client; client = client->next) count += client->has_asked;
     else
         for (const hpt_pending *at = file->under_way.first; at; at = at->next)
             count |= at->urb.urb.endpoint == HP_USB_EVENT_ENDPOINT;

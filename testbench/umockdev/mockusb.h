@@ -50,7 +50,8 @@ void hpt_mock_mute(hpt_device *device, bool mute);
 /* Another report descriptor in sysfs, for who only reads there. Until the HID is bound anew. */
 void hpt_mock_describe_hid(hpt_device *device, const uint8_t *descriptor, size_t n);
 
-/* How many programs fetch input reports: they have the hidraw node open, or by libusb the interface and an urb. */
+/* How many programs fetch input reports: they have the hidraw node open and have asked for a report, or by libusb the
+ * interface and an urb. (hidapi 0.13 leaks when the board goes while it opens the node.) */
 unsigned hpt_mock_listeners(hpt_device *device);
 
 /* Claims an interface, as another program would, from usbhid if need be, and gives it back. */

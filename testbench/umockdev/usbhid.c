@@ -113,6 +113,7 @@ static int answer(hpt_client *client, unsigned long code, UMockdevIoctlData *arg
     UMockdevIoctlData *data = umockdev_ioctl_data_resolve(argument, 0, bytes, NULL);
     if (!data) return -EFAULT;
     int result = choose(hpt_mock_device_of(client->node->device), _IOC_NR(code), data->data, bytes);
+    client->has_asked |= _IOC_NR(code) == NUMBER_GFEATURE;
     g_object_unref(data);
     return result;
 }

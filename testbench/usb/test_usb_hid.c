@@ -1,5 +1,5 @@
-/* The control plane through the real hidapi, its libusb back end, beside the packets of the same board: both are asked
- * at a time, and whatever happens to the one or the cable, the other says what is true. */
+/* The control plane through the real hidapi, its libusb back end, beside the packets of the same board: both are
+ * asked at a time, and whatever happens to the one or the cable, the other says what is true. */
 #include "rig.h"
 #include <hidapi.h>
 #include <hitpipe/control.h>
@@ -22,8 +22,7 @@
 enum { PACKETS = (RIG_RAYS + RIG_PACKET - 1) / RIG_PACKET, PATIENCE_MS = 5000, ASKED = 100 };
 
 static void says(const hp_control *control, const char *words) {
-    if (!strstr(hp_control_message(control), words))
-        fail_msg("no \"%s\" in: %s", words, hp_control_message(control));
+    if (!strstr(hp_control_message(control), words)) fail_msg("no \"%s\" in: %s", words, hp_control_message(control));
 }
 
 static hp_control *open_control(const char *serial) {
@@ -284,9 +283,9 @@ int main(void) {
     static unsigned speeds[] = {HP_USB_HIGH, HP_USB_SUPER};
     const struct CMUnitTest tests[] = {
         BOTH(a_board_says_who_and_how_it_is) BOTH(every_packet_is_an_event) BOTH(both_answer_at_a_time)
-        BOTH(an_abort_leaves_it) BOTH(the_clock_is_chosen)
+            BOTH(an_abort_leaves_it) BOTH(the_clock_is_chosen)
 #include "fault_tests.def"
-        cmocka_unit_test(boards_are_listed),
+                cmocka_unit_test(boards_are_listed),
     };
     return cmocka_run_group_tests(tests, NULL, leave_hidapi);
 }
