@@ -21,9 +21,9 @@ $(HITPIPE_OTHER): $(HOST_OBJ) $(LIB) $(HIDAPI_CHOICE)
 	$(call say,LD)
 	$(run)$(CC) $(LDSAN) $(HOST_OBJ) $(LIB) -o $@ $(LIBS_HOST) $(subst hidapi-$(HIDAPI),hidapi-$(OTHER_$(HIDAPI)),$(LIBS_LIB))
 
-# The tests that show hidapi, with the program and the library linked with its libusb back end.
+# The tests that show hidapi in the library, with its libusb back end: of the program, test_umockdev has both anyway.
 test-hidapi-libusb: ## run the tests of the control plane with hidapi's libusb back end
 	@$(MAKE) HIDAPI=libusb $(HITPIPE) $(BUILD)/testbench/unit/test_hid $(UMOCKDEV_TESTS)
-	@BUILD=$(BUILD) HIDAPI=libusb testbench/run $(JOBS) $(BUILD)/testbench/unit/test_hid $(UMOCKDEV_TESTS) testbench/unit/test_headers.sh
+	@BUILD=$(BUILD) HIDAPI=libusb ONLY=library testbench/run $(JOBS) $(BUILD)/testbench/unit/test_hid $(UMOCKDEV_TESTS) testbench/unit/test_headers.sh
 
 .PHONY: test-hidapi-libusb

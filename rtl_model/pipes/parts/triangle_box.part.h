@@ -10,7 +10,7 @@
  * S. Gottschalk, M. Lin, D. Manocha, "OBBTree", 1996, section 5; T. Akenine-Moller, "Fast 3D Triangle-Box Overlap
  * Testing", 2001. The sets meet when on none of these lines their shadows part, and the depth is the least overlap of
  * shadows, to the nearer side, over the length of the direction. What is left of the list when some of it vanishes
- * (a segment, a point, a slab, an edge along an axis) still decides: see testbench/support/pair_cases.c.
+ * (a segment, a point, a slab, an edge along an axis) still decides: class degenerate of docs/accuracy.md.
  *
  * Rounding. Everything is projected on the one rounded vector that stands for a direction. A shadow on any direction
  * bounds the depth from above, so a direction that is off can only fail to be the least; and an edge is off by no
